@@ -123,7 +123,6 @@ function scan(text,    token) {
 
 function open_brace() {
   if (collecting) body_token("=")
-  sub(/^(END_TEST )+/, "", declaration)
   if (depth++ > 0) return
   in_function = declaration ~ /\)$/ && declaration !~ /=/
   if (in_function) begin_function()
@@ -202,7 +201,6 @@ function end_function(    length_) {
 function end_declaration(    text, before_value, word, i) {
   text = declaration
   declaration = ""
-  sub(/^(END_TEST )+/, "", text)
   if (text ~ /^typedef [^(]* \( [^*]/) function_type[declared_name(text)] = 1
   if (text == "" || text ~ /^typedef / || text ~ /^_Static_assert/) return
   if (split(text, word, /[ ,]+/) > 1 && word[1] in function_type) {

@@ -46,9 +46,7 @@ typedef struct friction_ops {
                   int n_node, const int *node, double t, friction_limit *out);
 } friction_ops;
 
-/* clang-format off */
 #define FRICTION_LIST(X) X(none) X(tresca) X(coulomb) X(nonlocal)
-/* clang-format on */
 #define FRICTION_EXTERN(name) extern const friction_ops name##_friction;
 FRICTION_LIST(FRICTION_EXTERN)
 extern const friction_ops *const friction_list[]; /* NULL at the end */

@@ -194,9 +194,3 @@ status effects_copy(const run *from, run *copy) {
   }
   return OK;
 }
-
-void effects_release(run *r) {
-  for (int k = 0; k < r->effects.n; ++k)
-    if (!r->effects.on[k].borrowed) memory_free(r->effects.on[k].state);
-  r->effects.n = 0;
-}

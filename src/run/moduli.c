@@ -73,12 +73,6 @@ status moduli_new(const model *m, const mesh *msh, const double *T, moduli *x) {
   return OK;
 }
 
-void moduli_free(moduli *x) {
-  RELEASE(x->elem_id, x->at, x->section_id, x->origin, x->kin, x->thickness,
-          x->E, x->C);
-  *x = (moduli){0};
-}
-
 status moduli_heat(moduli *x, const model *m, const double *T, int *changed) {
   *changed = 0;
   for (int k = 0; k < x->n_own; ++k)

@@ -81,13 +81,6 @@ status visco_new(run *r) {
   return OK;
 }
 
-void visco_free(visco *v) {
-  if (v == NULL) return;
-  for (int i = 0; i < SLOTS; ++i) matrices_free(&v->slot[i]);
-  matrices_free(&v->fresh);
-  memory_free(v);
-}
-
 void visco_add_strains(const run *r, double *e0) {
   const visco *v = r->strains.visco;
   for (int k = 0; k < v->x.n; ++k)

@@ -207,6 +207,7 @@ typedef struct course_state {
 } course_state;
 
 struct run {
+  char *owner; /* of all that run_new requests */
   const model *m;
   const mesh *msh;
   const history_sink *sink;
@@ -273,9 +274,8 @@ int effects_strain(const run *r, int elem_id);
 int effects_reach_far(const run *r); /* 1: one is "far" */
 void effects_show(const run *r, state *s);
 status effects_keep(run *r, archive *a);
-/* List of "from" for its copy; valid (release it) also after a failure. */
+/* List of "from" for its copy. */
 status effects_copy(const run *from, run *copy);
-void effects_release(run *r);
 
 /* matrices.c: use m for the next equilibria; its solver is made if there is
  * none, and r->elastic again if temperatures have changed the moduli. */
@@ -323,7 +323,6 @@ status run_take_stiffness(run *r);
  * are no elasticity; ERR_MEMORY. */
 status moduli_new(const model *m, const mesh *msh, const double *T,
                   moduli *out);
-void moduli_free(moduli *x); /* accepts all-zero */
 /* To other temperatures; *changed = 1 if an entry is another one now, else it
  * stays. ERR_DECK likewise. */
 status moduli_heat(moduli *x, const model *m, const double *T, int *changed);
@@ -356,7 +355,6 @@ double strains_rounding(const run *r, double u);
 
 /* Inelastic strains. points.c: of the elements whose law flows. */
 status visco_new(run *r);
-void visco_free(visco *v); /* accepts NULL */
 void visco_add_strains(const run *r,
                        double *e0);      /* e0[ns*r->strains.eigen.n] */
 void visco_show(const run *r, state *s); /* view of the outputs */

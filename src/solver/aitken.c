@@ -283,14 +283,8 @@ static status aitken_solve(const contact_problem *cp, const void *par,
   return OK;
 }
 
-/* clang-format off */
 const solver_ops aitken_solver = {
-  .name = "aitken",
-  .family = "relaxation",
-  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
-             SPARSE_COMPLIANCE,
-  .entries = "METHOD=AITKEN, which relaxes row by row,",
-  .param_size = sizeof(aitken), .work_size = sizeof(aitken_work),
-  .options = aitken_options, .setup = aitken_setup, .solve = aitken_solve
-};
-/* clang-format on */
+    SOLVER_OF(aitken), .family = "relaxation",
+    .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
+               SPARSE_COMPLIANCE,
+    .entries = "METHOD=AITKEN, which relaxes row by row,"};

@@ -193,13 +193,7 @@ static status lagrange_keep(void *work, archive *a) {
   return archive_reals(a, "step", &((lagrange_work *)work)->step, 1);
 }
 
-/* clang-format off */
 const solver_ops lagrange_solver = {
-  .name = "lagrange",
-  .family = "multipliers",
-  .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
-  .param_size = sizeof(lagrange), .work_size = sizeof(lagrange_work),
-  .options = lagrange_options, .setup = lagrange_setup, .solve = lagrange_solve,
-  .keep = lagrange_keep
-};
-/* clang-format on */
+    SOLVER_OF(lagrange), .family = "multipliers",
+    .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
+    .keep = lagrange_keep};

@@ -402,13 +402,6 @@ static status pcg_solve(const contact_problem *cp, const void *par, void *work,
   return OK;
 }
 
-/* clang-format off */
-const solver_ops pcg_solver = {
-  .name = "pcg",
-  .family = "projection",
-  .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE |
-             SPARSE_COMPLIANCE,
-  .param_size = sizeof(pcg), .work_size = sizeof(pcg_work),
-  .options = pcg_options, .setup = pcg_setup, .solve = pcg_solve
-};
-/* clang-format on */
+const solver_ops pcg_solver = {SOLVER_OF(pcg), .family = "projection",
+                               .handles = SOLVES_TRESCA | SOLVES_3D |
+                                          NEEDS_COMPLIANCE | SPARSE_COMPLIANCE};

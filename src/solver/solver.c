@@ -48,13 +48,13 @@ int solver_promises(sweep_promise *p, int k, double residual, double tol) {
 
 status solver_set_up(const solver_ops *ops, const contact_problem *cp,
                      const void *par, void **work) {
-  char *own = NULL;
-  PASS_NEW(own, ops->work_size);
+  *work = NULL;
+  OWNED_NEW(char, own, ops->work_size);
   OWNS(own);
-  const status st = ops->setup(cp, par, own);
-  *work = st == OK ? own : NULL;
-  if (st != OK) memory_free(own);
-  return st;
+  PASS(ops->setup(cp, par, own));
+  *work = own;
+  own = NULL;
+  return OK;
 }
 
 status best_iterate_new(int m, best_iterate *best) {

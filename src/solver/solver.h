@@ -103,12 +103,15 @@ typedef struct solver_ops {
   status (*keep)(void *work, archive *a);
 } solver_ops;
 
+/* What follows from the name of a method: its structs NAME, NAME_work, options
+ * and functions. */
+#define SOLVER_OF(NAME)                                                        \
+  .name = #NAME, .param_size = sizeof(NAME), .work_size = sizeof(NAME##_work), \
+  .options = NAME##_options, .setup = NAME##_setup, .solve = NAME##_solve
+
 /* The first row of a family stands for it. */
-/* clang-format off */
 #define SOLVER_LIST(X) \
-  X(newton) X(lemke) X(sor) X(pcg) X(auglag) X(aitken) X(lagrange) \
-  X(proximal)
-/* clang-format on */
+  X(newton) X(lemke) X(sor) X(pcg) X(auglag) X(aitken) X(lagrange) X(proximal)
 #define SOLVER_EXTERN(name) extern const solver_ops name##_solver;
 SOLVER_LIST(SOLVER_EXTERN)
 extern const solver_ops *const solver_list[];    /* NULL at the end */

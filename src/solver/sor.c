@@ -202,14 +202,8 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
   return OK;
 }
 
-/* clang-format off */
 const solver_ops sor_solver = {
-  .name = "sor",
-  .family = "relaxation",
-  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
-             SPARSE_COMPLIANCE,
-  .entries = "METHOD=SOR, which relaxes row by row,",
-  .param_size = sizeof(sor), .work_size = sizeof(sor_work),
-  .options = sor_options, .setup = sor_setup, .solve = sor_solve
-};
-/* clang-format on */
+    SOLVER_OF(sor), .family = "relaxation",
+    .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
+               SPARSE_COMPLIANCE,
+    .entries = "METHOD=SOR, which relaxes row by row,"};

@@ -4,7 +4,6 @@
  * default, and the worst errors that are left, of the mesh and of the solver.
  * Runs $PROTIS, else build/release/protis.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -33,9 +32,9 @@ static double number(const char *at, const char *name) {
 static cost measure(const char *deck, const char *words, const char *card) {
   cost c = {.cpu = HUGE_VAL};
   for (int k = 0; k < RUNS; ++k) {
-    job j;
+    JOB j;
     ck_assert_int_le(job_run_with(&j, deck, card, 0, words), 1);
-    char *json = job_file(&j, "json");
+    FREED char *json = job_file(&j, "json");
     const char *at = strstr(json, "\"stage\": \"contact solver\"");
     c.cpu = fmin(c.cpu, number(at, "\"cpu\": "));
     c.iterations = 0.0;
@@ -43,13 +42,11 @@ static cost measure(const char *deck, const char *words, const char *card) {
       c.iterations += atof(at + strlen("\"iterations\": "));
     c.from_mesh = number(json, "\"mesh_error_worst_percent\": ");
     c.solver = number(json, "\"solver_error_worst_percent\": ");
-    free(json);
-    job_end(&j);
   }
   return c;
 }
 
-START_TEST(examples_with_and_without) {
+TEST(examples_with_and_without) {
   printf("%-36s %10s %9s %10s %9s %8s %9s %9s\n", "TOL=BALANCED", "iterations",
          "cpu[s]", "balanced", "cpu[s]", "saved[%]", "mesh[%]", "solver[%]");
   for (size_t k = 0; k < sizeof examples / sizeof *examples; ++k) {
@@ -62,11 +59,5 @@ START_TEST(examples_with_and_without) {
     fflush(stdout);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *t = tcase_create("balanced");
-  tcase_set_timeout(t, 1800);
-  tcase_add_test(t, examples_with_and_without);
-  return unit_run("balanced", t);
-}
+UNIT_MAIN_FOR("balanced", 1800)

@@ -3,7 +3,6 @@
  * memory, their ratio, and the factor within which the forecast expects them.
  * Runs $PROTIS, else build/release/protis.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -65,20 +64,19 @@ static int is_near(double a, double b, double factor) {
   return a < b * factor && b < a * factor;
 }
 
-START_TEST(forecasts_beside_the_passes) {
+TEST(forecasts_beside_the_passes) {
   int n = 0, near[2] = {0, 0}, all = 0, told[2] = {0, 0};
   printf("%-38s %6s %9s %9s %7s %7s %9s %9s %7s %7s\n", "--estimate-cost",
          "target", "cpu[s]", "real", "ratio", "within", "MB", "real", "ratio",
          "within");
   for (size_t k = 0; k < sizeof scenes / sizeof *scenes; ++k) {
-    char card[60], words[80];
     job j;
     price expected, within;
-    snprintf(words, sizeof words, "%s --estimate-cost", scenes[k].words);
+    PRINTED(words, "%s --estimate-cost", scenes[k].words);
     job_run_with(&j, scenes[k].deck, "", 0, words);
     const int known = forecast_of(&j, scenes[k].target, &expected, &within);
     job_end(&j);
-    snprintf(card, sizeof card, "*ACCURACY, TARGET=%g\n", scenes[k].target);
+    PRINTED(card, "*ACCURACY, TARGET=%g\n", scenes[k].target);
     const int code = job_run_with(&j, scenes[k].deck, card, 0, scenes[k].words);
     if (known && code == 0) {
       const price is = price_of(&j);
@@ -104,6 +102,5 @@ START_TEST(forecasts_beside_the_passes) {
       "as told in %d and %d\n",
       n, near[0], near[1], all, told[0], told[1]);
 }
-END_TEST
 
-UNIT_MAIN("forecast", forecasts_beside_the_passes)
+UNIT_MAIN("forecast")

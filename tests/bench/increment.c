@@ -8,9 +8,6 @@
 #include "support/job.h"
 #include "support/unit.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 
 enum { FEW = 10, MANY = 60, PAIRS = 5 };
@@ -33,15 +30,15 @@ static double child_cpu(void) {
 }
 
 /* CPU of a stage in the closing table of the listing, s. */
-static double stage_cpu(const job *j, const char *stage) {
+static double stage_cpu(const job *j, const char *name) {
   char key[80], *lst = job_file(j, "lst");
   long calls;
   double cpu = 0;
-  snprintf(key, sizeof key, "\n  %s ", stage);
+  snprintf(key, sizeof key, "\n  %s ", name);
   const char *table = strstr(lst, "\nCOST\n");
   ck_assert_ptr_nonnull(table);
   const char *at = strstr(table, key);
-  ck_assert_msg(at != NULL, "%s", stage);
+  ck_assert_msg(at != NULL, "%s", name);
   ck_assert_int_eq(sscanf(at + strlen(key), "%ld %lf", &calls, &cpu), 2);
   free(lst);
   return cpu;
@@ -57,30 +54,28 @@ static const char *cards(int dim) {
 
 /* A run of n increments. */
 static cost run_block(const bench_case *c, int n) {
-  job j = job_begin("increment");
-  job_copy(&j, c->dim == 2 ? "input/creep_block/creep_block.geo"
-                           : "tests/regression/mesh/cube.geo");
-  job_write(&j, "increment.inp",
-            "*PARAMETER\nN = %d\n*MESH, FILE=%s\n"
-            "*MATERIAL, NAME=LEAD\n*ELASTIC\n130.D3, 0.2\n"
-            "*INELASTIC, LAW=%s\n*SOLID SECTION, ELSET=BODY, MATERIAL=LEAD%s\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=FOOT, GROUP=%s, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.5\n"
-            "*STEP\n*STATIC\n%s*OUTPUT, HDF5=NO\n"
-            "*END STEP\n*STEP\n*VISCO, INTEGRATOR=%s\n0.1, %.17g\n"
-            "*END STEP\n",
-            c->cells, c->dim == 2 ? "creep_block.geo" : "cube.geo", c->law,
-            c->dim == 2 ? ", TYPE=CPE3" : "",
-            c->dim == 2 ? "CONTACT" : "BOTTOM", cards(c->dim), c->integrator,
-            0.1 * n);
+  JOB j = job_with(
+      "increment",
+      c->dim == 2 ? "input/creep_block/creep_block.geo"
+                  : "tests/regression/mesh/cube.geo",
+      "*PARAMETER\nN = %d\n*MESH, FILE=%s\n"
+      "*MATERIAL, NAME=LEAD\n*ELASTIC\n130.D3, 0.2\n"
+      "*INELASTIC, LAW=%s\n*SOLID SECTION, ELSET=BODY, MATERIAL=LEAD%s\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=FOOT, GROUP=%s, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.5\n"
+      "*STEP\n*STATIC\n%s*OUTPUT, HDF5=NO\n"
+      "*END STEP\n*STEP\n*VISCO, INTEGRATOR=%s\n0.1, %.17g\n"
+      "*END STEP\n",
+      c->cells, c->dim == 2 ? "creep_block.geo" : "cube.geo", c->law,
+      c->dim == 2 ? ", TYPE=CPE3" : "", c->dim == 2 ? "CONTACT" : "BOTTOM",
+      cards(c->dim), c->integrator, 0.1 * n);
   double cpu = child_cpu();
   int code = job_run(&j, "");
   cpu = child_cpu() - cpu;
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   cost k = {stage_cpu(&j, "interior solves"), stage_cpu(&j, "contact solver"),
             cpu - stage_cpu(&j, "mesh")};
-  job_end(&j);
   return k;
 }
 
@@ -98,7 +93,7 @@ static cost pair_of_runs(const bench_case *c) {
                 (many.contact - few.contact) / n, (many.all - few.all) / n};
 }
 
-START_TEST(increments_of_a_linear_law) {
+TEST(increments_of_a_linear_law) {
   static const bench_case cases[] = {
       {"MAXWELL\n4.", "MIDPOINT", 2, 100},
       {"MAXWELL\n4.", "MIDPOINT", 2, 200},
@@ -110,18 +105,16 @@ START_TEST(increments_of_a_linear_law) {
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     const bench_case *c = &cases[i];
     cost k[PAIRS];
-    char name[64];
     for (int p = 0; p < PAIRS; ++p) k[p] = pair_of_runs(c);
     qsort(k, PAIRS, sizeof *k, by_ratio);
     const cost *mid = &k[PAIRS / 2];
-    snprintf(name, sizeof name, "%.*s %d^%d", (int)strcspn(c->law, "\n"),
-             c->law, c->cells, c->dim);
+    PRINTED(name, "%.*s %d^%d", (int)strcspn(c->law, "\n"), c->law, c->cells,
+            c->dim);
     printf("%-28s %-12s %9.2f %9.2f %9.2f  %.2f (%.2f to %.2f)\n", name,
            c->integrator, 1e3 * mid->solves, 1e3 * mid->contact, 1e3 * mid->all,
            ratio(mid), ratio(&k[0]), ratio(&k[PAIRS - 1]));
     fflush(stdout);
   }
 }
-END_TEST
 
-UNIT_MAIN("increment", increments_of_a_linear_law)
+UNIT_MAIN("increment")

@@ -11,7 +11,6 @@
  * and sheared, from a cold start, mu = 0.3. The same problems by GetFEM where
  * python3-getfem is installed (tests/peers/getfem_contact.py).
  */
-#include "base/base.h"
 #include "mesh/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -110,7 +109,7 @@ static int between(FILE *f, int *no, const row *a, const row *b) {
 }
 
 static void write_strip(FILE *f, int cells, spacing how) {
-  row *r = calloc(200, sizeof *r);
+  FREED row *r = calloc(200, sizeof *r);
   int n = how == GRADED ? strip_rows(cells, r) : layers(cells, r);
   int no = 0, elements = cells + r[n - 1].n;
   fprintf(f,
@@ -130,7 +129,6 @@ static void write_strip(FILE *f, int cells, spacing how) {
     fprintf(f, "%d 1 2 3 3 %d %d\n", ++no, at + i + 1, at + i + 2);
   for (int k = 1; k < n; ++k) between(f, &no, r + k - 1, r + k);
   fprintf(f, "$EndElements\n");
-  free(r);
 }
 
 static void write_cube(FILE *f, int cells) {
@@ -209,11 +207,10 @@ static void mesh_block(const char *geo, const char *msh) {
 
 static job make_job(const bench_case *c, const char *kind) {
   job j = job_begin("size");
-  char path[100], made[100];
   const int is_msh = c->dim == 2;
   const char *file = is_msh || c->how == GRADED ? "size.msh" : "size.geo";
-  snprintf(path, sizeof path, "%s/size.%s", j.dir, is_msh ? "msh" : "geo");
-  snprintf(made, sizeof made, "%s/size.msh", j.dir);
+  PRINTED(path, "%s/size.%s", j.dir, is_msh ? "msh" : "geo");
+  PRINTED(made, "%s/size.msh", j.dir);
   FILE *f = fopen(path, "w");
   if (c->dim == 2)
     write_strip(f, c->cells, c->how);
@@ -259,9 +256,8 @@ static int run(const char *const *words, const char *output, double *cpu,
 }
 
 static int run_protis(const job *j, double *cpu, double *mega) {
-  char deck[100];
   const char *program = getenv("PROTIS");
-  snprintf(deck, sizeof deck, "%s/size.inp", j->dir);
+  PRINTED(deck, "%s/size.inp", j->dir);
   if (program == NULL) program = "build/release/protis";
   return run((const char *const[]){program, deck, "--quiet", NULL}, "/dev/null",
              cpu, mega);
@@ -271,11 +267,10 @@ static int run_protis(const job *j, double *cpu, double *mega) {
 static void row_of_getfem(const bench_case *c) {
   static const char python[] = "/usr/bin/python3";
   double cpu, mega, force;
-  job j = make_job(c, "AUTO");
-  char msh[100], geo[100], output[100];
-  snprintf(msh, sizeof msh, "%s/size.msh", j.dir);
-  snprintf(geo, sizeof geo, "%s/size.geo", j.dir);
-  snprintf(output, sizeof output, "%s/size.txt", j.dir);
+  JOB j = make_job(c, "AUTO");
+  PRINTED(msh, "%s/size.msh", j.dir);
+  PRINTED(geo, "%s/size.geo", j.dir);
+  PRINTED(output, "%s/size.txt", j.dir);
   if (access(msh, F_OK) != 0) mesh_block(geo, msh);
   printf("%d-D %-7s %6d %-23s ", c->dim,
          c->how == GRADED ? "graded" : "uniform", c->cells, GETFEM);
@@ -288,24 +283,19 @@ static void row_of_getfem(const bench_case *c) {
                 output, &cpu, &mega))
     puts("failed");
   else {
-    dat d = job_table(&j, "TOTALS", 0);
-    char *text = job_file(&j, "txt");
+    FREED char *text = job_file(&j, "txt");
     ck_assert_ptr_nonnull(text);
     force = strtod(text, NULL);
     printf("%9.2f %9.1f   force differs by %.1e\n", cpu, mega,
-           force / dat_at(&d, 0, "normal") - 1);
-    free(text);
-    dat_free(&d);
+           force / job_value(&j, "TOTALS", 0, "normal") - 1);
   }
-  job_end(&j);
 }
 
 /* What --check foresees of a kind, s and MB. */
 static void expected(job *j, const char *kind, double *cpu, double *mega) {
-  char key[40];
   *cpu = *mega = 0;
   if (job_run(j, "--check") != 0) return;
-  snprintf(key, sizeof key, "stiffness %.*s", (int)strcspn(kind, ","), kind);
+  PRINTED(key, "stiffness %.*s", (int)strcspn(kind, ","), kind);
   const char *at = strstr(j->text, key);
   if (at == NULL) return;
   at += strcspn(at, "0123456789");
@@ -321,7 +311,7 @@ static void row_of(const bench_case *c, const char *kind) {
     row_of_getfem(c);
     return;
   }
-  job j = make_job(c, kind);
+  JOB j = make_job(c, kind);
   expected(&j, kind, &cpu_before, &mega_before);
   if (run_protis(&j, &cpu, &mega))
     printf("%d-D %-7s %6d %-23s %9.2f %9.1f %12.2g %12.1f\n", c->dim,
@@ -330,10 +320,9 @@ static void row_of(const bench_case *c, const char *kind) {
   else
     printf("%d-D %6d %-23s failed\n", c->dim, c->cells, kind);
   fflush(stdout);
-  job_end(&j);
 }
 
-START_TEST(both_kinds_of_stiffness) {
+TEST(both_kinds_of_stiffness) {
   const char *one = getenv("ROW");
   const int all = getenv("BIG") != NULL, only = one != NULL ? atoi(one) : 0;
   puts(
@@ -346,6 +335,5 @@ START_TEST(both_kinds_of_stiffness) {
       row_of(&cases[i], cases[i].kinds[k]);
   }
 }
-END_TEST
 
-UNIT_MAIN("size", both_kinds_of_stiffness)
+UNIT_MAIN("size")

@@ -3,7 +3,6 @@
  * each integrator, a rejected increment leaves nothing behind, a smallest
  * increment that is too long is told by the exit code.
  */
-#include "base/base.h"
 #include "support/square_case.h"
 #include "support/unit.h"
 
@@ -54,49 +53,38 @@ static accepted accepted_of(const job *j) { return accepted_in(j, 2); }
  * is that of the start, 1e-3 (1, nu, nu); what it errs by decays with the
  * stress, so that all together err by no more than the sum; E = 1000.
  */
-START_TEST(error_is_below_the_sum_of_what_is_allowed) {
+TESTS(error_is_below_the_sum_of_what_is_allowed, ROWS) {
   static const double tolerance[] = {1e-2, 1e-3, 1e-4};
   for (int k = 0; k < 3; ++k) {
-    char visco[160];
-    snprintf(visco, sizeof visco,
-             "*VISCO, INTEGRATOR=%s, TOLERANCE=%g\n2., 2.\n", rows[_i],
-             tolerance[k]);
-    job j = run_deck("", HELD, visco, 0);
-    dat d = job_table(&j, "ELEMENTS", -1);
+    PRINTED(visco, "*VISCO, INTEGRATOR=%s, TOLERANCE=%g\n2., 2.\n", rows[_i],
+            tolerance[k]);
+    JOB j = run_deck("", HELD, visco, 0);
+    DAT d = job_table(&j, "ELEMENTS", -1);
     const double error = fabs(dat_at(&d, 0, "stress_yy") - .4203503845);
     const double each = tolerance[k] * sqrt(1 + 2 * 0.3 * 0.3);
     ck_assert_double_le(error, accepted_of(&j).n * each);
-    dat_free(&d);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A run whose first increments are refused gives the bytes of one that starts
  * with the length that was accepted. */
-START_TEST(rejected_increments_leave_nothing_behind) {
-  char visco[160];
-  job a = run_deck(FLOOR(0.2), PRESS(10.),
+TEST(rejected_increments_leave_nothing_behind) {
+  JOB a = run_deck(FLOOR(0.2), PRESS(10.),
                    "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n1., 1.\n", 0);
   const accepted first_of_a = accepted_of(&a);
   const double dt = first_of_a.dt;
   int halvings = (int)lround(-log2(dt));
   ck_assert_int_ge(first_of_a.attempt, 2);
   ck_assert_double_eq_tol(dt, ldexp(1.0, -halvings), 1e-4 * dt);
-  snprintf(visco, sizeof visco,
-           "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n%.17g, 1., %.17g\n",
-           ldexp(1.0, -halvings), 1e-6);
-  job b = run_deck(FLOOR(0.2), PRESS(10.), visco, 0);
+  PRINTED(visco,
+          "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n%.17g, 1., %.17g\n",
+          ldexp(1.0, -halvings), 1e-6);
+  JOB b = run_deck(FLOOR(0.2), PRESS(10.), visco, 0);
   ck_assert_int_eq(accepted_of(&b).attempt, 1);
-  char *first = job_file(&a, "dat"), *second = job_file(&b, "dat");
+  FREED char *first = job_file(&a, "dat"), *second = job_file(&b, "dat");
   ck_assert_uint_gt(strlen(first), 5000);
   ck_assert_str_eq(first, second);
-  free(first);
-  free(second);
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
 /*
  * Errors are compared with the largest elastic strain of all increments so far,
@@ -104,7 +92,7 @@ END_TEST
  * length; of *STATIC alone; applied suddenly; twice as large before, with half
  * the tolerance.
  */
-START_TEST(strains_of_other_steps_count) {
+TESTS(strains_of_other_steps_count, 2) {
   static const struct {
     const char *load, *before, *sudden;
     int step_no;
@@ -119,33 +107,26 @@ START_TEST(strains_of_other_steps_count) {
   accepted expected = {0};
   for (int k = 0; k < 4; ++k) {
     const double tolerance = 0.1 * pow(1.3, -2 - 4 * _i);
-    char visco[240];
-    snprintf(visco, sizeof visco,
-             "%s*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=%.9g\n1., 1.\n%s",
-             path[k].before, tolerance * path[k].factor, path[k].sudden);
-    job j = run_deck("", path[k].load, visco, 0);
+    PRINTED(visco, "%s*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=%.9g\n1., 1.\n%s",
+            path[k].before, tolerance * path[k].factor, path[k].sudden);
+    JOB j = run_deck("", path[k].load, visco, 0);
     const accepted found = accepted_in(&j, path[k].step_no);
     if (k == 0) expected = found;
     ck_assert_int_eq(found.n, expected.n);
     ck_assert_double_eq_tol(found.dt, expected.dt, 1e-5 * expected.dt);
-    job_end(&j);
   }
 }
-END_TEST
 
-START_TEST(missed_tolerance_is_told) {
-  job j = run_deck(
+TEST(missed_tolerance_is_told) {
+  JOB j = run_deck(
       FLOOR(0.2), PRESS(10.),
       "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-9\n0.5, 1., 0.25\n", 1);
-  dat e = job_table(&j, "ENERGY", -1);
+  DAT e = job_table(&j, "ENERGY", -1);
   ck_assert_double_eq_tol(dat_at(&e, 0, "time"), 2.0, 1e-12);
-  dat_free(&e);
-  job_end(&j);
 }
-END_TEST
 
 /* Without dt_min increments go down to 1e-6 dt: tau = 2. */
-START_TEST(increments_are_as_short_as_is_right) {
+TEST(increments_are_as_short_as_is_right) {
   job j = run_deck(
       "", HELD, "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-5\n1E3, 1E3\n", 0);
   job_end(&j);
@@ -155,25 +136,21 @@ START_TEST(increments_are_as_short_as_is_right) {
                1);
   job_end(&j);
 }
-END_TEST
 
 /* Explicit integrators are kept below their limit, tau = 2, at any tolerance.
  */
-START_TEST(increments_stay_stable) {
-  job j = run_deck("", HELD,
+TEST(increments_stay_stable) {
+  JOB j = run_deck("", HELD,
                    "*VISCO, INTEGRATOR=HEUN, TOLERANCE=1.\n50., 100.\n", 0);
-  dat d = job_table(&j, "ELEMENTS", -1);
+  DAT d = job_table(&j, "ELEMENTS", -1);
   ck_assert_double_le(dat_max(&d, "stress_yy"), 1e-6);
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* A strain that grows from nothing: what counts as rounding is that of the end
  * of an increment, so the first errs as others do, by a pull or by heat of a
  * body that is held all round. Relaxation time 2, E = 1000:
  * E (1 - exp(-t/2)) 1e-3, and as much over -(1 - nu). */
-START_TEST(strains_from_nothing_count) {
+TESTS(strains_from_nothing_count, 2) {
   static const char *const load[] = {SYMMETRY, "*BOUNDARY\nBODY, 1, 2\n"};
   static const char *const visco[] = {
       "*VISCO, INTEGRATOR=EULER, TOLERANCE=1E-3\n2., 2.\n"
@@ -184,42 +161,36 @@ START_TEST(strains_from_nothing_count) {
   const square_case s = {STEEL,    PROPORTIONAL "*EXPANSION\n1.E-3\n",
                          "CPS3",   "",
                          load[_i], visco[_i]};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   const accepted found = accepted_of(&j);
-  dat d = job_table(&j, "ELEMENTS", -1);
+  DAT d = job_table(&j, "ELEMENTS", -1);
   ck_assert_int_ge(found.attempt, 2);
   ck_assert_double_le(found.dt, 0.5);
   ck_assert_double_eq_tol(dat_at(&d, 0, "stress_yy"),
                           factor[_i] * (1 - exp(-1)), 0.02);
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* Half of the length, and half again, until it is within the limit of Euler's
  * method, 2 tau = 4: no shorter. */
-START_TEST(increments_are_as_long_as_is_stable) {
-  job j = run_deck("", HELD,
+TEST(increments_are_as_long_as_is_stable) {
+  JOB j = run_deck("", HELD,
                    "*VISCO, INTEGRATOR=EULER, TOLERANCE=1.\n12., 48.\n", 0);
   const accepted found = accepted_of(&j);
   ck_assert_double_eq_tol(found.dt, 3, 1e-12);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * Relaxation times from 1e-11 to 1e19 s in one body, whose held stress falls as
  * E e (1 - sum g (1 - exp(-t/tau))): increments grow with what is left to
  * relax, from 1e-12 s to 1e20 s, by a factor of 4 at most.
  */
-START_TEST(increments_grow_over_thirty_decades) {
+TESTS(increments_grow_over_thirty_decades, 2) {
   static const char *const scheme[] = {"BACKWARD", "EXPONENTIAL"};
   const double part = 0.03, end = 1e20, tol = 1e-3;
   char law[2000] = "*INELASTIC, LAW=PRONY\n", visco[160];
   double expected = 1.0;
   for (int k = -11; k <= 19; ++k) {
-    char line[64];
-    snprintf(line, sizeof line, "%g, %g, 1e%d\n", part, part, k);
+    PRINTED(line, "%g, %g, 1e%d\n", part, part, k);
     strcat(law, line);
     expected += part * expm1(-end / pow(10, k));
   }
@@ -227,17 +198,14 @@ START_TEST(increments_grow_over_thirty_decades) {
            "*VISCO, INTEGRATOR=%s, TOLERANCE=%g\n1e-12, %g\n", scheme[_i], tol,
            end);
   const square_case s = {STEEL, law, "CPS3", "", HELD, visco};
-  job j = square_run(&s, 0);
-  dat d = job_table(&j, "ELEMENTS", -1);
+  JOB j = square_run(&s, 0);
+  DAT d = job_table(&j, "ELEMENTS", -1);
   const double each = tol * sqrt(1 + 2 * 0.3 * 0.3);
   const accepted all = accepted_of(&j);
   ck_assert_int_ge(all.n, (int)(32 * log(10) / log(4)));
   ck_assert_double_le(fabs(dat_at(&d, 0, "stress_yy") - expected),
                       fmin(0.02, all.n * each));
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * A stress of 1.2 at the end of the only increment passes a threshold of 1
@@ -257,60 +225,51 @@ enum { BLIND = sizeof blind / sizeof *blind };
 static const double UNIAXIAL = 1.08628; /* sqrt(1 + 2 nu^2), nu = 0.3 */
 
 static job run_past(int k, const char *visco, double eta) {
-  char cards[300], law[80];
-  snprintf(law, sizeof law, "*INELASTIC, LAW=BINGHAM\n1., %g\n", eta);
-  snprintf(cards, sizeof cards, "%s*DSLOAD\nTOP, P, %s\n", visco,
-           passes[k].load);
+  PRINTED(law, "*INELASTIC, LAW=BINGHAM\n1., %g\n", eta);
+  PRINTED(cards, "%s*DSLOAD\nTOP, P, %s\n", visco, passes[k].load);
   const square_case s = {STEEL, law, "CPS3", "", passes[k].before, cards};
   return square_run(&s, 0);
 }
 
 /* Error of the strain at the end. */
 static double error_past(const job *j, int k, double eta) {
-  dat d = job_table(j, "NODES", -1);
+  DAT d = job_table(j, "NODES", -1);
   const double found = dat_max(&d, "u_y");
-  dat_free(&d);
   return fabs(found - 1e-3 * passes[k].stress - passes[k].flow * 10 / eta);
 }
 
-START_TEST(flow_that_passes_its_threshold_is_seen) {
-  char visco[200];
+TESTS(flow_that_passes_its_threshold_is_seen, 2 * BLIND) {
   const int k = _i / BLIND;
   const double tol = 1e-3, each = tol * 1.2e-3 * UNIAXIAL;
-  snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=%s, TOLERANCE=%g\n1., 1.\n",
-           blind[_i % BLIND], tol);
-  job j = run_past(k, visco, 10);
+  PRINTED(visco, "*VISCO, INTEGRATOR=%s, TOLERANCE=%g\n1., 1.\n",
+          blind[_i % BLIND], tol);
+  JOB j = run_past(k, visco, 10);
   const double error = error_past(&j, k, 10);
   const int n = accepted_of(&j).n;
   ck_assert_msg(error <= n * each, "%s: error %g, %d increments of %g",
                 blind[_i % BLIND], error, n, each);
-  job_end(&j);
 }
-END_TEST
 
 /* The same of the error of the steps, whose truth is 81 % for EULER. Stages of
  * HEUN and RK4 are refused with this eta: of a held strain they are not stable.
  */
-START_TEST(flow_that_begins_late_is_an_error_of_the_steps) {
-  char visco[200];
+TESTS(flow_that_begins_late_is_an_error_of_the_steps, BLIND) {
   const double eta = _i == 1 || _i == 2 ? 1000 : 10;
-  snprintf(visco, sizeof visco,
-           "*VISCO, INTEGRATOR=%s\n1., 1.\n*ACCURACY, TIME=YES\n", blind[_i]);
-  job j = run_past(0, visco, eta);
+  PRINTED(visco, "*VISCO, INTEGRATOR=%s\n1., 1.\n*ACCURACY, TIME=YES\n",
+          blind[_i]);
+  JOB j = run_past(0, visco, eta);
   const double error = error_past(&j, 0, eta) / 1.2e-3,
                told = 0.01 * job_told(&j, "time_error_percent");
   ck_assert_double_gt(error, 1e-3);
   ck_assert_msg(told >= 0.5 * error / sqrt(1 + error * error),
                 "%s: told %g, error %g", blind[_i], told, error);
-  job_end(&j);
 }
-END_TEST
 
 /* A block pressed at a constant rate by 0.01 within the relaxation time 2 and
  * raised again: it lifts off when its stress is zero, at t = 2 + 2 ln(2 - 1/e),
  * and keeps the strain by which the top is still below, without a stress. Its
  * error is that of the increments, also of those that a TOLERANCE= makes. */
-START_TEST(strain_that_is_left_has_the_error_of_the_steps) {
+TESTS(strain_that_is_left_has_the_error_of_the_steps, 18) {
   static const char *const by[] = {"BACKWARD", "MIDPOINT"};
   static const double dt[] = {1.0, 0.5, 0.2, 0.1, 0.5};
   const double left = 0.01 * (1 - log(2 - exp(-1)));
@@ -333,22 +292,19 @@ START_TEST(strain_that_is_left_has_the_error_of_the_steps) {
       FLOOR(0.) "*AMPLITUDE, NAME=UP\n0., 0., 2., 1., 4., 0.\n",
       "*BOUNDARY\nLEFT, 1\nTOP, 2\n",
       visco};
-  job j = square_run(&s, 0);
-  dat d = job_table(&j, "NODES", -1);
+  JOB j = square_run(&s, 0);
+  DAT d = job_table(&j, "NODES", -1);
   const double error = fabs(dat_max(&d, "u_y") / left - 1),
                told = 0.01 * job_told(&j, "time_error_percent");
   ck_assert_msg(told >= 0.5 * error && told <= 2.0 * error,
                 "%s, dt %g, %d steps: told %g, error %g", by[_i / 2 % 2],
                 dt[_i / 4], steps, told, error);
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* A block held on its floor relaxes for ten relaxation times. In one increment
  * the midpoint rule takes all stress from it, flows five times too far, and the
  * block lifts off: without a stress, but not without an error. */
-START_TEST(flow_that_takes_all_stress_is_no_rounding) {
+TESTS(flow_that_takes_all_stress_is_no_rounding, 2) {
   static const char *const visco[] = {
       "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1.E-4\n20., 20.\n",
       "*VISCO, INTEGRATOR=MIDPOINT\n20., 20., 0.01\n"
@@ -359,32 +315,27 @@ START_TEST(flow_that_takes_all_stress_is_no_rounding) {
                          FLOOR(0.),
                          "*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -1.E-3\n",
                          visco[_i]};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   square_all_have(&j, -1, "ei_yy", 1e-3 * expm1(-10.0), 1e-6);
-  job_end(&j);
 }
-END_TEST
 
 /* A held strain relaxes for its relaxation time in two increments; in the step
  * after that the stress is still wrong by as much. */
-START_TEST(strains_that_a_step_holds_keep_their_error) {
+TESTS(strains_that_a_step_holds_keep_their_error, 2) {
   static const char *const after[] = {"*STATIC\n", "*QUASISTATIC\n1., 1.\n"};
-  char visco[200];
-  snprintf(visco, sizeof visco,
-           "*VISCO, INTEGRATOR=BACKWARD\n1., 2.\n*ACCURACY, TIME=YES\n"
-           "*END STEP\n*STEP\n%s",
-           after[_i]);
+  PRINTED(visco,
+          "*VISCO, INTEGRATOR=BACKWARD\n1., 2.\n*ACCURACY, TIME=YES\n"
+          "*END STEP\n*STEP\n%s",
+          after[_i]);
   const square_case s = {STEEL, PROPORTIONAL, "CPS3", "", HELD, visco};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   const double right = exp(-1.0), found = 1 / 2.25,
                error = (found - right) / found,
                told = 0.01 * job_told(&j, "time_error_percent");
   square_all_have(&j, -1, "stress_yy", found, 1e-9);
   ck_assert_msg(told >= 0.5 * error && told <= 2.0 * error, "told %g, error %g",
                 told, error);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * A stress of 0.012 with a pulse of 1.2, from 6.33 to 6.37 of 10 s, under
@@ -408,35 +359,29 @@ static void check_pulse(const char *cards, double most, int linear) {
       STEEL,    linear ? PROPORTIONAL : "*INELASTIC, LAW=NORTON\n1.E-3, 3.\n",
       "CPS3",   PULSE("PULSE"),
       SYMMETRY, cards};
-  job j = square_run(&s, 0);
-  dat d = job_table(&j, "NODES", -1);
+  JOB j = square_run(&s, 0);
+  DAT d = job_table(&j, "NODES", -1);
   const double found = dat_max(&d, "u_y") - 1.2e-5,
                flow = pulse_flow(linear ? 5e-4 : 1e-3, linear ? 1 : 3);
   ck_assert_msg(fabs(found - flow) <= most * flow, "%s: %g, right %g", cards,
                 found, flow);
-  dat_free(&d);
-  job_end(&j);
 }
 
-START_TEST(pulse_of_a_table_is_seen) {
-  char cards[300];
-  snprintf(cards, sizeof cards,
-           "*VISCO, INTEGRATOR=%s, TOLERANCE=1.E-5\n0.01, 10.\n"
-           "*DSLOAD\nTOP, TY, 1.2, PULSE\n",
-           rows[_i]);
+TESTS(pulse_of_a_table_is_seen, ROWS) {
+  PRINTED(cards,
+          "*VISCO, INTEGRATOR=%s, TOLERANCE=1.E-5\n0.01, 10.\n"
+          "*DSLOAD\nTOP, TY, 1.2, PULSE\n",
+          rows[_i]);
   check_pulse(cards, 2e-3, strcmp(rows[_i], "EXPONENTIAL") == 0);
 }
-END_TEST
 
-START_TEST(pulse_of_a_table_is_seen_by_balanced_steps) {
-  char cards[300];
-  snprintf(cards, sizeof cards,
-           "*VISCO, INTEGRATOR=%s\n0.01, 10.\n*DSLOAD\nTOP, TY, 1.2, PULSE\n"
-           "*ACCURACY, TIME=BALANCED, MESH=YES\n",
-           rows[_i]);
+TESTS(pulse_of_a_table_is_seen_by_balanced_steps, ROWS) {
+  PRINTED(cards,
+          "*VISCO, INTEGRATOR=%s\n0.01, 10.\n*DSLOAD\nTOP, TY, 1.2, PULSE\n"
+          "*ACCURACY, TIME=BALANCED, MESH=YES\n",
+          rows[_i]);
   check_pulse(cards, 0.1, strcmp(rows[_i], "EXPONENTIAL") == 0);
 }
-END_TEST
 
 /* Pulses of supports, temperatures, obstacles, given forces and friction end
  * increments where they begin; some count the 1 s of the first step. */
@@ -462,23 +407,18 @@ static const struct {
      "*BOUNDARY\nLEFT, 1\nTOP, 2\n", "", " 6.3300E+000 "}};
 enum { N_PULSE = sizeof pulses / sizeof *pulses };
 
-START_TEST(pulses_of_all_tables_end_increments) {
-  char model[600], cards[300];
-  snprintf(model, sizeof model, "%s%s", PULSE("PULSE"), pulses[_i].model);
-  snprintf(cards, sizeof cards,
-           "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1.E-3\n0.01, 10.\n%s",
-           pulses[_i].cards);
+TESTS(pulses_of_all_tables_end_increments, N_PULSE) {
+  PRINTED(model, "%s%s", PULSE("PULSE"), pulses[_i].model);
+  PRINTED(cards, "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1.E-3\n0.01, 10.\n%s",
+          pulses[_i].cards);
   const square_case s = {STEEL,           DEVIATORIC "*EXPANSION\n1.E-5\n",
                          "CPS3",          model,
                          pulses[_i].load, cards};
-  job j = square_run(&s, 0);
-  char *sta = job_file(&j, "sta");
+  JOB j = square_run(&s, 0);
+  FREED char *sta = job_file(&j, "sta");
   const int found = strstr(sta, pulses[_i].begins) != NULL;
-  free(sta);
   ck_assert_msg(found, "no increment ends at %s", pulses[_i].begins);
-  job_end(&j);
 }
-END_TEST
 
 /* A smooth course in 400 points takes about as many increments as the same in
  * an expression. */
@@ -494,14 +434,12 @@ static int count_of_wave(const char *integrator, int in_points) {
            "*DSLOAD\nTOP, TY, 1.2, WAVE\n",
            integrator);
   const square_case s = {STEEL, DEVIATORIC, "CPS3", model, SYMMETRY, cards};
-  job j = square_run(&s, 0);
-  const int n = accepted_of(&j).n;
-  job_end(&j);
-  return n;
+  JOB j = square_run(&s, 0);
+  return accepted_of(&j).n;
 }
 
 /* After a corner increments go on with the length they had. */
-START_TEST(corners_do_not_shorten_what_follows) {
+TEST(corners_do_not_shorten_what_follows) {
   const square_case s = {
       STEEL,
       PROPORTIONAL,
@@ -510,79 +448,43 @@ START_TEST(corners_do_not_shorten_what_follows) {
       SYMMETRY "*DSLOAD\nTOP, TY, 1.\n",
       "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1.E-3\n0.0899, 10.\n"
       "*DSLOAD\nTOP, TY, 1., A\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   ck_assert_int_le(accepted_of(&j).n, 9);
-  job_end(&j);
 }
-END_TEST
 
 /* Pushed out between a floor and a lid by more than friction holds: what does
  * not converge in short increments is passed in long ones, whose ends are those
  * of the tables. */
-START_TEST(step_without_equilibrium_ends_soon) {
+TESTS(step_without_equilibrium_ends_soon, 2) {
   static const char *const ways[][2] = {
       {"VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3", ""},
       {"QUASISTATIC", "*ACCURACY, MESH=YES, TIME=BALANCED\n"}};
-  job j = job_begin("lid");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "lid.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n*INELASTIC, LAW=MAXWELL\n5.\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0, 0\n0, 1\n"
-            "*OBSTACLE, NAME=LID, TYPE=PLANE\n0, 1\n0, -1\nMOVE, 0, -0.004\n"
-            "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=FLOOR\n"
-            "*FRICTION, CONTACT=F, LAW=COULOMB\n0.2\n"
-            "*CONTACT, NAME=L, GROUP=TOP, OBSTACLE=LID\n"
-            "*FRICTION, CONTACT=L, LAW=COULOMB\n0.3\n"
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*END STEP\n"
-            "*STEP\n*%s\n0.5, 1., 5E-4\n*DLOAD\nBODY, BX, 6.\n%s"
-            "*PRINT, ENERGY, FREQUENCY=0\n*END STEP\n",
-            ways[_i][0], ways[_i][1]);
+  JOB j =
+      job_with("lid", "tests/regression/mesh/square.geo",
+               "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.3\n*INELASTIC, LAW=MAXWELL\n5.\n"
+               "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0, 0\n0, 1\n"
+               "*OBSTACLE, NAME=LID, TYPE=PLANE\n0, 1\n0, -1\nMOVE, 0, -0.004\n"
+               "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=FLOOR\n"
+               "*FRICTION, CONTACT=F, LAW=COULOMB\n0.2\n"
+               "*CONTACT, NAME=L, GROUP=TOP, OBSTACLE=LID\n"
+               "*FRICTION, CONTACT=L, LAW=COULOMB\n0.3\n"
+               "*STEP\n*QUASISTATIC\n0.5, 1.\n*END STEP\n"
+               "*STEP\n*%s\n0.5, 1., 5E-4\n*DLOAD\nBODY, BX, 6.\n%s"
+               "*PRINT, ENERGY, FREQUENCY=0\n*END STEP\n",
+               ways[_i][0], ways[_i][1]);
   ck_assert_int_eq(job_run(&j, ""), 1);
-  dat e = job_table(&j, "ENERGY", -1);
+  DAT e = job_table(&j, "ENERGY", -1);
   ck_assert_double_le(dat_at(&e, 0, "increment"), 45);
   ck_assert_double_eq(dat_at(&e, 0, "time"), 2);
-  dat_free(&e);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(dense_tables_are_smooth) {
+TESTS(dense_tables_are_smooth, ROWS) {
   const int smooth = count_of_wave(rows[_i], 0);
   const int points = count_of_wave(rows[_i], 1);
   ck_assert_msg(2 * points <= 3 * smooth, "%s: %d increments, not %d", rows[_i],
                 points, smooth);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("adaptive");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, error_is_below_the_sum_of_what_is_allowed, 0,
-                      ROWS);
-  tcase_add_test(tests, rejected_increments_leave_nothing_behind);
-  tcase_add_loop_test(tests, strains_of_other_steps_count, 0, 2);
-  tcase_add_test(tests, missed_tolerance_is_told);
-  tcase_add_test(tests, increments_are_as_short_as_is_right);
-  tcase_add_test(tests, increments_stay_stable);
-  tcase_add_loop_test(tests, strains_from_nothing_count, 0, 2);
-  tcase_add_test(tests, increments_are_as_long_as_is_stable);
-  tcase_add_loop_test(tests, increments_grow_over_thirty_decades, 0, 2);
-  tcase_add_loop_test(tests, flow_that_passes_its_threshold_is_seen, 0,
-                      2 * BLIND);
-  tcase_add_loop_test(tests, flow_that_takes_all_stress_is_no_rounding, 0, 2);
-  tcase_add_loop_test(tests, flow_that_begins_late_is_an_error_of_the_steps, 0,
-                      BLIND);
-  tcase_add_loop_test(tests, strains_that_a_step_holds_keep_their_error, 0, 2);
-  tcase_add_loop_test(tests, strain_that_is_left_has_the_error_of_the_steps, 0,
-                      18);
-  tcase_add_loop_test(tests, pulse_of_a_table_is_seen, 0, ROWS);
-  tcase_add_loop_test(tests, pulse_of_a_table_is_seen_by_balanced_steps, 0,
-                      ROWS);
-  tcase_add_loop_test(tests, pulses_of_all_tables_end_increments, 0, N_PULSE);
-  tcase_add_test(tests, corners_do_not_shorten_what_follows);
-  tcase_add_loop_test(tests, step_without_equilibrium_ends_soon, 0, 2);
-  tcase_add_loop_test(tests, dense_tables_are_smooth, 0, ROWS);
-  return unit_run("adaptive", tests);
-}
+UNIT_MAIN("adaptive")

@@ -11,7 +11,6 @@
  *   ! first line of stderr; absent: there is none
  *   = exit code; behind it how many messages there are, if not one
  */
-#include "base/base.h"
 #include "base/message.h"
 #include "model/keyword/keyword.h"
 #include "support/job.h"
@@ -61,8 +60,8 @@ static void read_line(bad_cases *all, char *line) {
 }
 
 static void read_cases(bad_cases *all, const char *name) {
-  char path[LINE], line[LINE];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
+  char line[LINE];
+  PRINTED(path, "%s/%s", folder, name);
   FILE *f = fopen(path, "r");
   ck_assert_msg(f != NULL, "%s", path);
   while (fgets(line, sizeof line, f) != NULL) read_line(all, line);
@@ -87,8 +86,8 @@ typedef struct text_lines {
 } text_lines;
 
 static void read_text(text_lines *t, const char *name) {
-  char path[LINE], line[LINE];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
+  char line[LINE];
+  PRINTED(path, "%s/%s", folder, name);
   t->n = 0;
   FILE *f = fopen(path, "r");
   if (f == NULL) return;
@@ -119,8 +118,7 @@ static int remove_line(text_lines *t, const bad_case *c, const char *text) {
 }
 
 static void write_text(const job *j, const char *name, text_lines *t) {
-  char path[LINE];
-  snprintf(path, sizeof path, "%s/%s", j->dir, name);
+  PRINTED(path, "%s/%s", j->dir, name);
   FILE *f = fopen(path, "w");
   ck_assert_ptr_nonnull(f);
   for (int i = 0; i < t->n; ++i) {
@@ -213,9 +211,8 @@ static int is_counted(const bad_case *c, const char *errors) {
 }
 
 static int run_case(const bad_case *c, const char *more, seen *s) {
-  job j = begin_run();
-  char words[LINE];
-  snprintf(words, sizeof words, "%s%s", prepare(&j, c), more);
+  JOB j = begin_run();
+  PRINTED(words, "%s%s", prepare(&j, c), more);
   int code = job_run(&j, words);
   note_numbers(s, j.errors);
   int good = code == c->exit_code &&
@@ -226,7 +223,6 @@ static int run_case(const bad_case *c, const char *more, seen *s) {
     fprintf(stderr, "%s%s\n  expected %d: %s\n  found    %d: %s\n", c->title,
             more, c->exit_code, c->expected == NULL ? "" : c->expected, code,
             j.errors);
-  job_end(&j);
   return good;
 }
 
@@ -257,8 +253,8 @@ static int speaks_of(const bad_case *c, const char *word) {
 
 static void check_tags(const bad_cases *all) {
   for (int i = 0; i < all->n; ++i) {
-    char tag[128], *dot;
-    snprintf(tag, sizeof tag, "%s", all->item[i].title + 1);
+    char *dot;
+    PRINTED(tag, "%s", all->item[i].title + 1);
     tag[strcspn(tag, "]")] = '\0';
     if (tag[0] == '\0') continue;
     if ((dot = strchr(tag, '.')) != NULL) {
@@ -280,7 +276,7 @@ static void read_error_files(bad_cases *all) {
     read_cases(all, error_files[i]);
 }
 
-START_TEST(every_card_and_parameter_has_a_case) {
+TEST(every_card_and_parameter_has_a_case) {
   static bad_cases all;
   int missing = 0;
   read_error_files(&all);
@@ -297,9 +293,8 @@ START_TEST(every_card_and_parameter_has_a_case) {
                 missing);
   free_cases(&all);
 }
-END_TEST
 
-START_TEST(folder_holds_no_other_cases) {
+TEST(folder_holds_no_other_cases) {
   int n = 0;
   DIR *dir = opendir(folder);
   ck_assert_ptr_nonnull(dir);
@@ -308,7 +303,6 @@ START_TEST(folder_holds_no_other_cases) {
   closedir(dir);
   ck_assert_int_eq(n, (int)(sizeof error_files / sizeof *error_files) + 1);
 }
-END_TEST
 
 /* Messages that need a mesh no lines of text can hold or that gmsh is the
  * first to refuse, a crack, two bodies, or name nodes that move alike;
@@ -377,9 +371,8 @@ static int run_no_decks(seen *s) {
   int failed = 0;
   for (size_t i = 0; i < sizeof no_decks / sizeof *no_decks; ++i) {
     const no_deck *d = &no_decks[i];
-    job j = job_begin("bad");
-    char path[LINE];
-    snprintf(path, sizeof path, "%s/bad.inp", j.dir);
+    JOB j = job_begin("bad");
+    PRINTED(path, "%s/bad.inp", j.dir);
     FILE *f = fopen(path, "w");
     for (int k = 0; k < d->repeat; ++k) fwrite(d->bytes, 1, (size_t)d->n, f);
     fclose(f);
@@ -390,12 +383,11 @@ static int run_no_decks(seen *s) {
       ++failed;
       fprintf(stderr, "no deck %zu: exit %d: %s\n", i, code, j.errors);
     }
-    job_end(&j);
   }
   return failed;
 }
 
-START_TEST(every_case_ends_with_its_message_and_exit_code) {
+TEST(every_case_ends_with_its_message_and_exit_code) {
   static seen s;
   int failed = run_no_decks(&s) + run_file("warning.cases", 0, &s);
   for (size_t i = 0; i < sizeof error_files / sizeof *error_files; ++i)
@@ -403,10 +395,9 @@ START_TEST(every_case_ends_with_its_message_and_exit_code) {
   ck_assert_msg(failed == 0, "%d cases failed", failed);
   check_messages(&s);
 }
-END_TEST
 
 /* --check finds what the run finds but for P4..., which arise in it. */
-START_TEST(check_alone_says_the_same) {
+TEST(check_alone_says_the_same) {
   static const char *const files[] = {"contact.cases", "warning.cases"};
   static bad_cases all;
   static seen s;
@@ -420,9 +411,5 @@ START_TEST(check_alone_says_the_same) {
   free_cases(&all);
   ck_assert_msg(failed == 0, "%d cases failed", failed);
 }
-END_TEST
 
-UNIT_MAIN("bad_input", every_card_and_parameter_has_a_case,
-          folder_holds_no_other_cases,
-          every_case_ends_with_its_message_and_exit_code,
-          check_alone_says_the_same)
+UNIT_MAIN("bad_input")

@@ -2,7 +2,6 @@
  * Tables at a time within an increment, of every effect with a state of its
  * own: those of an increment that ends there; the run goes on as without them.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -39,9 +38,8 @@ static const char *const decks[] = {
 /* In increments of the length "dt"; between: tables at times of their own, but
  * of the energies. */
 static job run(const char *deck, const char *dt, int between) {
-  char text[2000];
   job j = job_begin("block");
-  snprintf(text, sizeof text, deck, dt);
+  PRINTED(text, deck, dt);
   block_file_write(&j, (int[]){8, 4}, (double[]){8.0, 4.0}, 0);
   job_copy(&j, "input/crack/crack.geo");
   job_write(&j, "block.inp",
@@ -53,13 +51,12 @@ static job run(const char *deck, const char *dt, int between) {
             : strstr(deck, "CRACK") != NULL ? ", SIF"
                                             : "",
             between ? ", TIME POINTS=T" : "");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
 static void compare(const job *a, const job *b, const char *table, int block) {
-  dat x = job_table(a, table, block), y = job_table(b, table, block);
+  DAT x = job_table(a, table, block), y = job_table(b, table, block);
   ck_assert(x.n_row == y.n_row && x.n_col == y.n_col);
   for (int c = 0; c < x.n_col; ++c) {
     if (strstr(x.name[c], "defect") != NULL ||
@@ -74,22 +71,16 @@ static void compare(const job *a, const job *b, const char *table, int block) {
                     x.name[c], is, was);
     }
   }
-  dat_free(&x);
-  dat_free(&y);
 }
 
-START_TEST(tables_within_an_increment) {
+TESTS(tables_within_an_increment, sizeof decks / sizeof *decks) {
   static const char *const tables[] = {"CONTACT", "TOTALS", "GOALS", "SIF"};
-  job a = run(decks[_i], "0.25", 1), b = run(decks[_i], "0.25", 0);
-  job first = run(decks[_i], "0.1", 0);
+  JOB a = run(decks[_i], "0.25", 1), b = run(decks[_i], "0.25", 0);
+  JOB first = run(decks[_i], "0.1", 0);
   for (int block = 0; block < 4; ++block) compare(&a, &b, "ENERGY", block);
   for (int k = 0; k < 4; ++k)
     if (k < 2 || strstr(decks[_i], k == 2 ? "GOAL" : "CRACK") != NULL)
       compare(&a, &first, tables[k], 0);
-  job_end(&a);
-  job_end(&b);
-  job_end(&first);
 }
-END_TEST
 
-UNIT_LOOP("between", tables_within_an_increment, sizeof decks / sizeof *decks)
+UNIT_MAIN_FOR("between", 10 * UNIT_SECONDS)

@@ -2,7 +2,6 @@
  * The error budget of a run against the true errors: of the increments against
  * a path of many, of the mesh against a fine one by the potential energy.
  */
-#include "base/base.h"
 #include "support/square_case.h"
 #include "support/unit.h"
 
@@ -24,55 +23,46 @@ enum { MESH_COLUMN = 11, TIME_COLUMN, SOLVER_COLUMN };
 
 /* The cylinder of hertz_line with friction in n increments. */
 static job roll(int n, const char *accuracy) {
-  job j = job_begin("cylinder");
-  job_copy(&j, "input/hertz_line/hertz_line.geo");
-  job_write(&j, "cylinder.inp",
-            "*PARAMETER\nR = 10.\nE = 210.D3\nNU = 0.3\n"
-            "A = 0.2348908547\nNC = 12\n"
-            "*MESH, FILE=hertz_line.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
-            "<E>, <NU>\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
-            "%.17g, 1.\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\nTOP, P, 50.\n"
-            "%s*PRINT, CONTACT, ENERGY, FREQUENCY=0\n*END STEP\n",
-            1.0 / n, accuracy);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j = job_with(
+      "cylinder", "input/hertz_line/hertz_line.geo",
+      "*PARAMETER\nR = 10.\nE = 210.D3\nNU = 0.3\n"
+      "A = 0.2348908547\nNC = 12\n"
+      "*MESH, FILE=hertz_line.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+      "<E>, <NU>\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+      "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+      "%.17g, 1.\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\nTOP, P, 50.\n"
+      "%s*PRINT, CONTACT, ENERGY, FREQUENCY=0\n*END STEP\n",
+      1.0 / n, accuracy);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
-START_TEST(error_of_the_steps_is_near_the_true_one) {
-  job fine = roll(160, "");
+TEST(error_of_the_steps_is_near_the_true_one) {
+  JOB fine = roll(160, "");
   ck_assert(isnan(last_of(&fine, TIME_COLUMN)));
   for (int n = 1; n <= 10; n = 2 * n + n / 2) { /* 1, 2, 5 */
-    job j = roll(n, "*ACCURACY, TIME=YES, MESH=NO\n");
+    JOB j = roll(n, "*ACCURACY, TIME=YES, MESH=NO\n");
     double told = last_of(&j, TIME_COLUMN), is = job_difference(&j, &fine, -1);
     ck_assert_msg(told > 0.7 * is && told < 1.5 * is, "%d: told %g, is %g", n,
                   told, is);
     ck_assert(isnan(last_of(&j, MESH_COLUMN)));
-    job_end(&j);
   }
-  job_end(&fine);
 }
-END_TEST
 
 /* What the solver does in the increments is told, not only in the first. */
-START_TEST(every_increment_stands_in_the_log_of_the_solver) {
-  job j = roll(3, "*ACCURACY, TIME=YES\n");
-  char *cvg = job_file(&j, "cvg");
+TEST(every_increment_stands_in_the_log_of_the_solver) {
+  JOB j = roll(3, "*ACCURACY, TIME=YES\n");
+  FREED char *cvg = job_file(&j, "cvg");
   for (int k = 1; k <= 3; ++k) {
-    char row[16];
-    snprintf(row, sizeof row, "\n%7d   1 ", k);
+    PRINTED(row, "\n%7d   1 ", k);
     ck_assert_msg(strstr(cvg, row) != NULL, "no increment %d in %s", k, cvg);
   }
-  free(cvg);
-  job_end(&j);
 }
-END_TEST
 
 /* Steps that add no error of their own, each with a path of its own. */
-START_TEST(error_of_the_steps_is_that_of_all_steps) {
+TEST(error_of_the_steps_is_that_of_all_steps) {
   static const char still[] =
       "*ACCURACY, TIME=YES\n*PRINT, ENERGY\n*END STEP\n*STEP\n*STATIC\n"
       "*END STEP\n*STEP\n*QUASISTATIC\n1., 1.\n";
@@ -81,19 +71,16 @@ START_TEST(error_of_the_steps_is_that_of_all_steps) {
   for (int k = 0; k < 3; ++k) {
     snprintf(more, sizeof more, "%s%s*ACCURACY, TIME=YES\n", k > 0 ? still : "",
              k > 1 ? still : "");
-    job j = roll(1, more);
-    dat e = job_table(&j, "ENERGY", -1);
+    JOB j = roll(1, more);
+    DAT e = job_table(&j, "ENERGY", -1);
     const double part = 0.01 * job_told(&j, "time_error_percent");
     norm[k] =
         part * sqrt(2 * dat_at(&e, 0, "strain_energy") / (1 - part * part));
-    dat_free(&e);
-    job_end(&j);
   }
   ck_assert_double_gt(norm[0], 0);
   ck_assert_double_ge(norm[1], 0.999999 * norm[0]);
   ck_assert_double_ge(norm[2], 0.999999 * norm[1]);
 }
-END_TEST
 
 /* Last figure of that name in JOB.json, %. */
 static double figure(const job *j, const char *name) {
@@ -110,13 +97,13 @@ static double figure(const job *j, const char *name) {
 
 /* Balanced with the error of the mesh: increments below what it asks for, fewer
  * of them for a larger share, and the error told is the true one. */
-START_TEST(increments_are_balanced_with_the_mesh) {
-  job fine = roll(160, "");
+TEST(increments_are_balanced_with_the_mesh) {
+  JOB fine = roll(160, "");
   double made[2];
   const char *const cards[] = {"*ACCURACY, TIME=BALANCED, TIME_SHARE=0.05\n",
                                "*ACCURACY, TIME=BALANCED, TIME_SHARE=0.005\n"};
   for (int k = 0; k < 2; ++k) {
-    job j = roll(20, cards[k]);
+    JOB j = roll(20, cards[k]);
     double told = last_of(&j, TIME_COLUMN), is = job_difference(&j, &fine, -1);
     double others = last_of(&j, MESH_COLUMN);
     ck_assert_msg(is < (k == 0 ? 0.05 : 0.005) * others, "%d: %g of %g", k, is,
@@ -125,80 +112,66 @@ START_TEST(increments_are_balanced_with_the_mesh) {
                   told, is);
     made[k] = figure(&j, "balanced_increments");
     ck_assert_double_eq(figure(&j, "balanced_increments_of_deck"), 20);
-    job_end(&j);
   }
   ck_assert_msg(made[0] < made[1] && made[0] < 20, "%g %g", made[0], made[1]);
-  job_end(&fine);
 }
-END_TEST
 
 /* A law that flows, from a first increment that is much too long: the error at
  * the end is below its share of a mesh error that is known from TIME=YES. */
-START_TEST(increments_of_flow_are_balanced) {
-  job j = job_begin("held");
-  job_copy(&j, "input/creep_block/creep_block.geo");
-  job_write(&j, "held.inp",
-            "*PARAMETER\nN = 8\n*MESH, FILE=creep_block.geo\n*MATERIAL, "
-            "NAME=M\n*ELASTIC\n130.D3, 0.2\n*INELASTIC, LAW=MAXWELL, "
-            "TYPE=DEVIATORIC\n1.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n*CONTACT, NAME=C, "
-            "GROUP=CONTACT, OBSTACLE=O\n*FRICTION, CONTACT=C, LAW=COULOMB\n"
-            "1.0\n*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1., 4., 1.E-4\n"
-            "*BOUNDARY\nSYMMETRY, 1\nTOP, 2, 2, -0.02\n"
-            "*ACCURACY, TIME=BALANCED\n*END STEP\n");
+TEST(increments_of_flow_are_balanced) {
+  JOB j =
+      job_with("held", "input/creep_block/creep_block.geo",
+               "*PARAMETER\nN = 8\n*MESH, FILE=creep_block.geo\n*MATERIAL, "
+               "NAME=M\n*ELASTIC\n130.D3, 0.2\n*INELASTIC, LAW=MAXWELL, "
+               "TYPE=DEVIATORIC\n1.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*OBSTACLE, NAME=O, TYPE=CONFORMING\n*CONTACT, NAME=C, "
+               "GROUP=CONTACT, OBSTACLE=O\n*FRICTION, CONTACT=C, LAW=COULOMB\n"
+               "1.0\n*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1., 4., 1.E-4\n"
+               "*BOUNDARY\nSYMMETRY, 1\nTOP, 2, 2, -0.02\n"
+               "*ACCURACY, TIME=BALANCED\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 0);
   double told = last_of(&j, TIME_COLUMN), others = last_of(&j, MESH_COLUMN);
   ck_assert_msg(told > 0 && told < 0.11 * others, "%g of %g", told, others);
   ck_assert_double_gt(figure(&j, "balanced_increments"), 4);
-  char *sta = job_file(&j, "sta");
+  FREED char *sta = job_file(&j, "sta");
   ck_assert_ptr_nonnull(strstr(sta, "error of the steps above its share"));
-  free(sta);
-  job_end(&j);
 }
-END_TEST
 
 /* The path of a proportional load is straight: no error, any increments. */
-START_TEST(proportional_load_has_no_error_of_steps) {
-  job j = job_begin("greco");
-  job_copy(&j, "input/greco/greco.geo");
-  job_write(&j, "greco.inp",
-            "*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n*QUASISTATIC\n"
-            "0.5, 1.0\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
-            "LEFT, P, 150.\n*ACCURACY, TIME=YES\n*END STEP\n"
-            "*STEP\n*STATIC\n*END STEP\n");
+TEST(proportional_load_has_no_error_of_steps) {
+  JOB j = job_with(
+      "greco", "input/greco/greco.geo",
+      "*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n*QUASISTATIC\n"
+      "0.5, 1.0\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
+      "LEFT, P, 150.\n*ACCURACY, TIME=YES\n*END STEP\n"
+      "*STEP\n*STATIC\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 0);
-  char *lst = job_file(&j, "lst"), *sta = job_file(&j, "sta");
+  FREED char *lst = job_file(&j, "lst"), *sta = job_file(&j, "sta");
   double told = NAN;
   sscanf(strstr(sta, "\n") + 1,
          "%*d %*d %*d %*s %*s %*d %*d %*d %*s %*d %*s %*s %lf", &told);
   ck_assert_double_le(told, 1e-9);
   ck_assert_ptr_nonnull(strstr(lst, "one static problem, no path"));
   ck_assert_double_eq(last_of(&j, TIME_COLUMN), 0.0);
-  free(lst);
-  free(sta);
-  job_end(&j);
 }
-END_TEST
 
 /* A square of one stress: the error is that of the steps alone. E = 1000, the
  * first step, to t = 1, is elastic. */
 static job flow(const char *law, const char *reference, const char *load,
                 const char *visco) {
-  job j = job_begin("flow");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "flow.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
-            "TYPE=CPS3\n*REFERENCE\n%s*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
-            "BOTTOM, 2\n%s*END STEP\n*STEP\n%s*ACCURACY, TIME=YES\n"
-            "*END STEP\n",
-            law, reference, load, visco);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j = job_with(
+      "flow", "tests/regression/mesh/square.geo",
+      "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+      "*ELASTIC\n1000., 0.3\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+      "TYPE=CPS3\n*REFERENCE\n%s*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+      "BOTTOM, 2\n%s*END STEP\n*STEP\n%s*ACCURACY, TIME=YES\n"
+      "*END STEP\n",
+      law, reference, load, visco);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
@@ -207,23 +180,20 @@ static void check_flow(const char *law, const char *reference, const char *load,
                        const char *integrator) {
   double before = HUGE_VAL;
   for (int n = 4; n <= 8; n *= 2) {
-    char visco[120];
-    snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=%s\n%g, 2.\n", integrator,
-             2.0 / n);
-    job j = flow(law, reference, load, visco);
+    PRINTED(visco, "*VISCO, INTEGRATOR=%s\n%g, 2.\n", integrator, 2.0 / n);
+    JOB j = flow(law, reference, load, visco);
     double told = figure(&j, "time_error_percent");
     double is = figure(&j, "true_error_percent");
     ck_assert_msg(told > 0.8 * is && told < 1.25 * is, "%s %d: told %g, is %g",
                   integrator, n, told, is);
     ck_assert_double_lt(told, 0.6 * before);
     before = told;
-    job_end(&j);
   }
 }
 
 /* Held strain, sigma = exp(-t/tau): the error of the stress. Constant stress,
  * e = 1/E0 + (1 - exp(-t E1/eta))/E1: that of the strain. */
-START_TEST(error_of_the_steps_is_told_where_a_law_flows) {
+TEST(error_of_the_steps_is_told_where_a_law_flows) {
   static const char *const integrators[] = {"EULER", "HEUN",
                                             "THETA, THETA=0.5"};
   for (int i = 0; i < 3; ++i) {
@@ -237,13 +207,12 @@ START_TEST(error_of_the_steps_is_told_where_a_law_flows) {
                "*DSLOAD\nTOP, TY, 1.\n", integrators[i]);
   }
 }
-END_TEST
 
 #define NEXT "*ACCURACY, TIME=YES, MESH=NO\n*END STEP\n*STEP\n"
 
 /* The top is drawn to the side at once at the start of the second *VISCO step,
  * where all slips, and goes back: the body answers as fast, nothing flows. */
-START_TEST(sudden_slip_has_no_error_of_steps) {
+TEST(sudden_slip_has_no_error_of_steps) {
   const square_case s = {"1000., 0.",
                          "*INELASTIC, LAW=MAXWELL\n1.E6\n",
                          "CPS3",
@@ -252,11 +221,9 @@ START_TEST(sudden_slip_has_no_error_of_steps) {
                          "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n" NEXT
                          "*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"
                          "*BOUNDARY\nTOP, 1, 1, 1.E-3, BACK\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   ck_assert_double_lt(last_of(&j, TIME_COLUMN), 1e-4);
-  job_end(&j);
 }
-END_TEST
 
 /* The same without a law, to both sides: the run has slip less by what the top
  * goes back within its first increment, and so has that of half its length. */
@@ -290,7 +257,7 @@ END_TEST
 
 /* All stresses relax at one rate, and their error with them: one of order 1
  * stays what it is in a step of order 4 that adds almost none. */
-START_TEST(error_of_steps_of_order_1_stays) {
+TEST(error_of_steps_of_order_1_stays) {
   double told[2];
   for (int k = 0; k < 2; ++k) {
     const square_case s = {STEEL,
@@ -302,19 +269,17 @@ START_TEST(error_of_steps_of_order_1_stays) {
                                     "*ACCURACY, TIME=YES, MESH=NO\n"
                                   : "*VISCO, INTEGRATOR=EULER\n0.25, 1.\n" NEXT
                                     "*VISCO, INTEGRATOR=RK4\n0.25, 1.\n"};
-    job j = square_run(&s, 0);
+    JOB j = square_run(&s, 0);
     told[k] = last_of(&j, TIME_COLUMN);
-    job_end(&j);
   }
   ck_assert_msg(fabs(told[1] - told[0]) < 0.02 * told[0], "%g, %g", told[0],
                 told[1]);
 }
-END_TEST
 
 /* A flowing square pressed on a floor where it sticks moves as one that is held
  * there, and half the steps differ as much: zones of slip may grow, so that the
  * error is 5/3 of that, not 4/3 as for schemes of order 2; 2 for EULER. */
-START_TEST(steps_beside_friction_are_those_of_growing_zones) {
+TEST(steps_beside_friction_are_those_of_growing_zones) {
   static const char *const integrators[] = {"EULER", "HEUN",
                                             "THETA, THETA=0.5"};
   static const char *const cards[] = {
@@ -325,77 +290,58 @@ START_TEST(steps_beside_friction_are_those_of_growing_zones) {
   for (int i = 0; i < 3; ++i) {
     double told[2];
     for (int k = 0; k < 2; ++k) {
-      job j = job_begin("stuck");
-      job_copy(&j, "tests/regression/mesh/square.geo");
-      job_write(&j, "stuck.inp",
-                "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n"
-                "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-                "*INELASTIC, LAW=ZENER\n500., 1000.\n"
-                "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s*STEP\n*VISCO, "
-                "INTEGRATOR=%s\n0.5, 2.\n%s*DSLOAD\nTOP, P, 1.\n"
-                "*ACCURACY, TIME=YES\n*END STEP\n",
-                cards[k], integrators[i],
-                k == 0 ? "*BOUNDARY\nBOTTOM, 1, 2\n" : "");
+      JOB j = job_with(
+          "stuck", "tests/regression/mesh/square.geo",
+          "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n"
+          "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+          "*INELASTIC, LAW=ZENER\n500., 1000.\n"
+          "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s*STEP\n*VISCO, "
+          "INTEGRATOR=%s\n0.5, 2.\n%s*DSLOAD\nTOP, P, 1.\n"
+          "*ACCURACY, TIME=YES\n*END STEP\n",
+          cards[k], integrators[i], k == 0 ? "*BOUNDARY\nBOTTOM, 1, 2\n" : "");
       ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
       told[k] = figure(&j, "time_error_percent");
-      job_end(&j);
     }
     ck_assert_double_gt(told[0], 0.01);
     ck_assert_double_eq_tol(told[1] / told[0], i == 0 ? 1.0 : 1.25, 1e-3);
   }
 }
-END_TEST
 
 /* Block of Hertz without friction, NC segments on the half contact and a mesh
  * that is as much finer everywhere. */
 static job press(int nc, const char *accuracy) {
-  job j = job_begin("block");
-  job_copy(&j, "input/hertz_line/hertz_block.geo");
-  job_write(&j, "block.inp",
-            "*PARAMETER\nA = 0.2348908547\nNC = %d\nGROWTH = %g\n"
-            "*MESH, FILE=hertz_block.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
-            "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/20\"\n"
-            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n*STEP\n*STATIC\n"
-            "*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, \"500/(100*A)\"\n"
-            "%s*PRINT, ENERGY, FREQUENCY=0\n*END STEP\n",
-            nc, 0.96 / nc, accuracy);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j =
+      job_with("block", "input/hertz_line/hertz_block.geo",
+               "*PARAMETER\nA = 0.2348908547\nNC = %d\nGROWTH = %g\n"
+               "*MESH, FILE=hertz_block.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+               "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/20\"\n"
+               "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n*STEP\n*STATIC\n"
+               "*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, \"500/(100*A)\"\n"
+               "%s*PRINT, ENERGY, FREQUENCY=0\n*END STEP\n",
+               nc, 0.96 / nc, accuracy);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
-/* Potential energy of one increment from rest: E - F'u, F'u twice the
- * trapezoidal work. */
-static double potential(const job *j, double *strain) {
-  dat e = job_table(j, "ENERGY", -1);
-  *strain = dat_at(&e, 0, "strain_energy");
-  double answer = *strain - 2.0 * dat_at(&e, 0, "external_work");
-  dat_free(&e);
-  return answer;
-}
-
-START_TEST(error_of_the_mesh_is_near_the_true_one) {
+TEST(error_of_the_mesh_is_near_the_true_one) {
   double strain, fine_strain;
-  job fine = press(16, "");
-  double least = potential(&fine, &fine_strain);
+  JOB fine = press(16, "");
+  double least = job_potential(&fine, &fine_strain);
   for (int nc = 4; nc <= 8; nc *= 2) {
-    job j = press(nc, "*ACCURACY, MESH=YES, SOLVER=NO\n");
+    JOB j = press(nc, "*ACCURACY, MESH=YES, SOLVER=NO\n");
     double told = last_of(&j, MESH_COLUMN);
-    double is = 100 * sqrt(2 * (potential(&j, &strain) - least)) /
+    double is = 100 * sqrt(2 * (job_potential(&j, &strain) - least)) /
                 sqrt(2 * fine_strain);
     ck_assert_msg(told > 0.7 * is && told < 1.5 * is, "%d: told %g, is %g", nc,
                   told, is);
     ck_assert(isnan(last_of(&j, SOLVER_COLUMN)));
-    job_end(&j);
   }
-  job_end(&fine);
 }
-END_TEST
 
-START_TEST(budget_stands_in_every_result) {
-  job j = roll(2, "*ACCURACY, MESH=YES, TIME=YES\n*PRINT, ELEMENTS\n");
-  char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
+TEST(budget_stands_in_every_result) {
+  JOB j = roll(2, "*ACCURACY, MESH=YES, TIME=YES\n*PRINT, ELEMENTS\n");
+  FREED char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
   ck_assert_ptr_nonnull(strstr(lst, "  error of the mesh: about "));
   ck_assert_ptr_nonnull(strstr(lst, "  error of the steps: about "));
   /* Two times behind two errors, each under its heading. */
@@ -411,16 +357,11 @@ START_TEST(budget_stands_in_every_result) {
   ck_assert_ptr_nonnull(strstr(json, "\"mesh_error_worst_percent\": "));
   ck_assert_ptr_nonnull(strstr(json, "\"time_error_estimate_cpu\": "));
   /* The shares of the elements make up the error. */
-  dat e = job_table(&j, "ELEMENTS", -1);
+  DAT e = job_table(&j, "ELEMENTS", -1);
   double sum = 0;
   for (int i = 0; i < e.n_row; ++i) sum += pow(dat_at(&e, i, "mesh_error"), 2);
   ck_assert_double_eq_tol(sqrt(sum) / last_of(&j, MESH_COLUMN), 1, 0.05);
-  dat_free(&e);
-  free(lst);
-  free(json);
-  job_end(&j);
 }
-END_TEST
 
 /* Word of a line of JOB.sta, the first after the heading being 1: mesh[%]. */
 static void mesh_word(const char *sta, int line, char *word) {
@@ -431,11 +372,10 @@ static void mesh_word(const char *sta, int line, char *word) {
 
 /* By default the error of the mesh stands at the last increment of each step,
  * where it is that of MESH=YES; MESH=NO has none. */
-START_TEST(error_of_the_mesh_stands_at_the_end_of_a_step) {
+TEST(error_of_the_mesh_stands_at_the_end_of_a_step) {
   enum { N = 8 };
   static const char two[] = "*END STEP\n*STEP\n*QUASISTATIC\n0.125, 1.\n";
-  char all[200];
-  snprintf(all, sizeof all, "*ACCURACY, MESH=YES\n%s", two);
+  PRINTED(all, "*ACCURACY, MESH=YES\n%s", two);
   job j[] = {roll(N, two), roll(N, all), roll(N, "*ACCURACY, MESH=NO\n")};
   char *sta[2] = {job_file(&j[0], "sta"), job_file(&j[1], "sta")};
   for (int i = 1; i <= 2 * N; ++i) {
@@ -448,20 +388,18 @@ START_TEST(error_of_the_mesh_stands_at_the_end_of_a_step) {
   for (int k = 0; k < 2; ++k) free(sta[k]);
   for (int k = 0; k < 3; ++k) job_end(&j[k]);
 }
-END_TEST
 
 /* The closing sentence names the largest error and what halving its cause gives
  * and costs; nothing where no error is known. */
-START_TEST(the_error_to_improve_next_is_told) {
-  char of_mesh[120];
+TEST(the_error_to_improve_next_is_told) {
   job j[] = {roll(8, ""), roll(2, "*ACCURACY, MESH=NO\n"),
              roll(2, "*ACCURACY, TIME=YES\n*SOLVER, TOL=BALANCED\n")};
   char *lst[3];
   for (int k = 0; k < 3; ++k) lst[k] = job_file(&j[k], "lst");
-  snprintf(of_mesh, sizeof of_mesh,
-           "improve next: the mesh: half the length of the elements gives "
-           "about %.2g %% for up to 5 times the CPU",
-           0.5 * figure(&j[0], "mesh_error_percent"));
+  PRINTED(of_mesh,
+          "improve next: the mesh: half the length of the elements gives "
+          "about %.2g %% for up to 5 times the CPU",
+          0.5 * figure(&j[0], "mesh_error_percent"));
   ck_assert_msg(strstr(lst[0], of_mesh) != NULL, "%s", of_mesh);
   ck_assert_ptr_nonnull(strstr(lst[0], "the solver is "));
   ck_assert_ptr_nonnull(
@@ -474,7 +412,6 @@ START_TEST(the_error_to_improve_next_is_told) {
     job_end(&j[k]);
   }
 }
-END_TEST
 
 UNIT_MAIN("budget", error_of_the_steps_is_near_the_true_one,
           error_of_the_steps_is_that_of_all_steps,

@@ -3,7 +3,6 @@
  * contact node, whose answers are closed forms, in many increments, and stopped
  * within a step and gone on with.
  */
-#include "base/base.h"
 #include "support/tips.h"
 #include "support/traced.h"
 #include "support/unit.h"
@@ -16,8 +15,7 @@ static job new_job(const char *cards) { return tips_new(G, "", cards); }
 
 static job run_job(const char *cards) {
   job j = new_job(cards);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
   return j;
 }
 
@@ -25,22 +23,19 @@ static job run_job(const char *cards) {
 static void check_stopped(const char *cards) {
   static const char *const none[] = {NULL};
   traced t = {.action = TRACE_COUNT};
-  job whole = new_job(cards);
+  JOB whole = new_job(cards);
   ck_assert_int_eq(traced_run(&whole, none, &t), 0);
   const int all = t.changes;
   for (int k = 3; k <= 4; ++k) {
-    job j = new_job(cards);
+    JOB j = new_job(cards);
     t = (traced){.action = TRACE_SIGNAL, .at = k * all / 10, .number = SIGINT};
     ck_assert_int_eq(traced_run(&j, none, &t), 130);
     ck_assert_int_gt(t.restarts, 0);
     ck_assert_int_eq(t.synced, t.restarts);
-    int code = job_run(&j, "--restart --no-timing");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    CK_EXIT(job_run(&j, "--restart --no-timing"), 0, j);
     const char *file = traced_difference(&whole, &j);
     ck_assert_msg(file == NULL, "stopped at %d: .%s differs", k, file);
-    job_end(&j);
   }
-  job_end(&whole);
 }
 
 /* ---- two rollers -------------------------------------------------------- */
@@ -61,14 +56,14 @@ static void check_stopped(const char *cards) {
 
 /* The surface passes by the radius times the angle; past mu N / G it slips: the
  * rest of the way is slip, and heat, of each roller and of both. */
-START_TEST(rollers_heat_by_the_way_that_slips) {
+TESTS(rollers_heat_by_the_way_that_slips, 2) {
   const double drawn = mu * N / G, way[] = {0.4, -0.3}, angle[] = {-0.2, 0.1};
-  job j = run_job(_i == 0 ? ROLLERS("DISPLACEMENT") : ROLLERS("VELOCITY"));
+  JOB j = run_job(_i == 0 ? ROLLERS("DISPLACEMENT") : ROLLERS("VELOCITY"));
   double heat = 0;
   for (int k = 0; k < 10; ++k) {
     const double part = 0.1 * (k + 1);
-    dat l = job_table(&j, "LOOP", k), c = job_table(&j, "CONTACT", k);
-    dat e = job_table(&j, "ENERGY", k);
+    DAT l = job_table(&j, "LOOP", k), c = job_table(&j, "CONTACT", k);
+    DAT e = job_table(&j, "ENERGY", k);
     heat = 0;
     for (int i = 0; i < 2; ++i) {
       const double sign = way[i] > 0 ? 1 : -1;
@@ -87,16 +82,10 @@ START_TEST(rollers_heat_by_the_way_that_slips) {
     /* What the rollers put in is heat and the springs. */
     ck_assert_double_eq_tol(dat_at(&e, 0, "normal_work"),
                             heat - first + mu * N * drawn, 1e-6);
-    dat_free(&l);
-    dat_free(&c);
-    dat_free(&e);
   }
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(rollers_go_on) { check_stopped(ROLLERS("DISPLACEMENT")); }
-END_TEST
+TEST(rollers_go_on) { check_stopped(ROLLERS("DISPLACEMENT")); }
 
 /* ---- u_0 and supports that move on from there --------------------------- */
 
@@ -108,68 +97,56 @@ END_TEST
   "*STEP\n*QUASISTATIC\n0.1, 1.\n*BOUNDARY\nCLAMPED, 1, 1, 0.01\nCLAMPED, 2\n" \
   "TIPS, 2\n*PRINT, NODES, CONTACT\n*OUTPUT\n*END STEP\n"
 
-START_TEST(supports_move_on_from_the_start) {
-  job j = run_job(RAMP);
+TEST(supports_move_on_from_the_start) {
+  JOB j = run_job(RAMP);
   for (int k = 0; k < 10; ++k) {
-    dat u = job_table(&j, "NODES", k);
+    DAT u = job_table(&j, "NODES", k);
     for (int i = 0; i < u.n_row; ++i)
       if (dat_at(&u, i, "y") > 0.5)
         ck_assert_double_eq_tol(dat_at(&u, i, "u_x"), 0.003 + 7e-4 * (k + 1),
                                 1e-12);
-    dat_free(&u);
   }
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(supports_move_on_after_a_stop) { check_stopped(RAMP); }
-END_TEST
+TEST(supports_move_on_after_a_stop) { check_stopped(RAMP); }
 
 /* ---- a tolerance ----------------------------------------------------------
  */
 
 /* Creep under a load of 1 that falls to some 0.002: errors are told in parts of
  * the largest strain so far, and what the small load lets creep is none. */
-START_TEST(tolerance_is_of_the_largest_strain_so_far) {
-  job j = new_job(
+TEST(tolerance_is_of_the_largest_strain_so_far) {
+  JOB j = new_job(
       "*AMPLITUDE, NAME=A\n"
       "\"if(t < 1, 1, 0.002*(1 + sin(40*(t - 1))))\"\n"
       "*STEP\n*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n"
       "0.125, 2.\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"
       "TIPS, 2, -1., A\n*PRINT, ENERGY\n*END STEP\n");
   tips_material(&j, "*INELASTIC, LAW=MAXWELL\n1.\n");
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  char *text = job_file(&j, "dat");
+  CK_EXIT(job_run(&j, ""), 0, j);
+  FREED char *text = job_file(&j, "dat");
   int late = 0;
   for (char *p = text; (p = strstr(p, " time ")) != NULL; p += 6)
     late += atof(p + 6) > 1.1;
   ck_assert_int_gt(late, 1);
   ck_assert_int_le(late, 20);
-  free(text);
-  job_end(&j);
 }
-END_TEST
 
 /* Steps of no more than 0.5 are stable, tau = 0.25: an increment of 1 and the
  * rest, 0.8, are made in halves. */
-START_TEST(rest_of_a_step_is_cut_in_halves) {
+TEST(rest_of_a_step_is_cut_in_halves) {
   static const double end[] = {0.5, 1, 1.4, 1.8};
-  job j = new_job(
+  JOB j = new_job(
       "*STEP\n*VISCO, INTEGRATOR=EULER, SUBSTEPS=AUTO\n1., 1.8\n*BOUNDARY\n"
       "CLAMPED, 1, 2\nTIPS, 2, 2, -0.01\n*PRINT, ENERGY\n"
       "*END STEP\n");
   tips_material(&j, "*INELASTIC, LAW=MAXWELL\n0.25\n");
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   for (int k = 0; k < 4; ++k) {
-    dat e = job_table(&j, "ENERGY", k);
+    DAT e = job_table(&j, "ENERGY", k);
     ck_assert_double_eq_tol(dat_at(&e, 0, "time"), end[k], 1e-12);
-    dat_free(&e);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* ---- a corner ------------------------------------------------------------ */
 
@@ -180,21 +157,20 @@ static void check_corner(const char *form, int wall) {
   static const char *const contact[] = {
       "*CONTACT, NAME=FLOOR, GROUP=FOOT1, OBSTACLE=FLOOR, NORMAL=OBSTACLE\n",
       "*CONTACT, NAME=WALL, GROUP=SIDE1, OBSTACLE=WALL, NORMAL=OBSTACLE\n"};
-  char cards[800];
   const double kn = 2 * G * 0.7 / 0.4;
-  snprintf(cards, sizeof cards,
-           "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0., -0.002\n0., 1.\n"
-           "*OBSTACLE, NAME=WALL, TYPE=PLANE\n0.003, 0.\n-1., 0.\n%s%s"
-           "*STEP\n*QUASISTATIC, FORM=%s\n0.1, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
-           "*CLOAD\nTIPS, 1, %.17g\nTIPS, 2, %.17g\n*SOLVER, TOL=1E-13\n"
-           "*PRINT, NODES, TOTALS, CONTACT\n*END STEP\n",
-           contact[1 - wall], contact[wall], form, 2 * 0.003 * G,
-           -4 * 0.002 * kn);
-  job j = run_job(cards);
+  PRINTED(cards,
+          "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0., -0.002\n0., 1.\n"
+          "*OBSTACLE, NAME=WALL, TYPE=PLANE\n0.003, 0.\n-1., 0.\n%s%s"
+          "*STEP\n*QUASISTATIC, FORM=%s\n0.1, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
+          "*CLOAD\nTIPS, 1, %.17g\nTIPS, 2, %.17g\n*SOLVER, TOL=1E-13\n"
+          "*PRINT, NODES, TOTALS, CONTACT\n*END STEP\n",
+          contact[1 - wall], contact[wall], form, 2 * 0.003 * G,
+          -4 * 0.002 * kn);
+  JOB j = run_job(cards);
   for (int k = 0; k < 10; ++k) {
     const double t = 0.1 * (k + 1);
-    dat u = job_table(&j, "NODES", k), f = job_table(&j, "TOTALS", k);
-    dat c = job_table(&j, "CONTACT", k);
+    DAT u = job_table(&j, "NODES", k), f = job_table(&j, "TOTALS", k);
+    DAT c = job_table(&j, "CONTACT", k);
     int tip = 0;
     while (dat_at(&u, tip, "node_no") != 3) ++tip;
     ck_assert_double_eq_tol(dat_at(&u, tip, "u_x"), fmin(0.003, 0.006 * t),
@@ -206,30 +182,14 @@ static void check_corner(const char *form, int wall) {
     ck_assert_double_eq_tol(dat_at(&f, wall, "normal"),
                             fmax(0, G * (0.006 * t - 0.003)), 1e-9);
     ck_assert_double_eq(dat_at(&c, 0, "f_t"), 0);
-    dat_free(&u);
-    dat_free(&f);
-    dat_free(&c);
   }
-  job_end(&j);
 }
 
-START_TEST(corner_closes_one_gap_after_the_other) {
+TEST(corner_closes_one_gap_after_the_other) {
   for (int wall = 0; wall < 2; ++wall) {
     check_corner("DISPLACEMENT", wall);
     check_corner("VELOCITY", wall);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("carried");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, rollers_heat_by_the_way_that_slips, 0, 2);
-  tcase_add_test(tests, rollers_go_on);
-  tcase_add_test(tests, supports_move_on_from_the_start);
-  tcase_add_test(tests, supports_move_on_after_a_stop);
-  tcase_add_test(tests, tolerance_is_of_the_largest_strain_so_far);
-  tcase_add_test(tests, rest_of_a_step_is_cut_in_halves);
-  tcase_add_test(tests, corner_closes_one_gap_after_the_other);
-  return unit_run("carried", tests);
-}
+UNIT_MAIN("carried")

@@ -6,7 +6,6 @@
  *
  * Unit cube or square, nu = 0, E = 1000, G = 500, relaxation time 2.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -15,15 +14,13 @@
 #define ANGLE (17.0 * acos(-1.0) / 180.0)
 
 static job run_cube(const char *cards, const char *model, const char *steps) {
-  job j = job_begin("cube");
-  job_copy(&j, "tests/regression/mesh/cube.geo");
-  job_write(&j, "cube.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "%s%s",
-            cards, model, steps);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j =
+      job_with("cube", "tests/regression/mesh/cube.geo",
+               "*PARAMETER\nN = 2\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "%s%s",
+               cards, model, steps);
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
   return j;
 }
 
@@ -35,7 +32,7 @@ static job run_cube(const char *cards, const char *model, const char *steps) {
 
 /* Nodes of the floor: slip along the angle, friction 0.3 of the force. */
 static void slips(const job *j, int k, double slip, double force) {
-  dat d = job_table(j, "CONTACT", k);
+  DAT d = job_table(j, "CONTACT", k);
   double c = cos(ANGLE), s = sin(ANGLE), all = 0;
   for (int i = 0; i < d.n_row; ++i) {
     double n = dat_at(&d, i, "f_n");
@@ -46,15 +43,13 @@ static void slips(const job *j, int k, double slip, double force) {
     all += n;
   }
   ck_assert_double_eq_tol(all, force, 1e-8);
-  dat_free(&d);
 }
 
 /* Every element of the last table. */
 static void all_have(const job *j, const char *column, double expected) {
-  dat d = job_table(j, "ELEMENTS", -1);
+  DAT d = job_table(j, "ELEMENTS", -1);
   for (int i = 0; i < d.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&d, i, column), expected, 1e-8);
-  dat_free(&d);
 }
 
 /* Tractions of the sides, and the top moved along the angle. */
@@ -74,48 +69,43 @@ static void patch(char *text, size_t size, const char *traction, double Ux,
 /* Pressed by 0.01, sheared by 3 = mu p, slip 0.004; then held in height while
  * all stresses relax and the top goes on by 0.005 a second: the shear strain
  * stays, and the foot goes on as the top does. */
-START_TEST(cone_with_relaxing_pressure) {
-  char first[1024], then[1024], steps[3000];
+TEST(cone_with_relaxing_pressure) {
+  char first[1024], then[1024];
   patch(first, sizeof first, "t", 0.01, "*t");
   patch(then, sizeof then, "exp(-(t - 1)/2)", 0.01, " + 0.005*(t - 1)");
-  snprintf(steps, sizeof steps,
-           "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 3, 3, -0.01\n%s"
-           "*STEP\n*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 2.\n%s",
-           first, then);
-  job j = run_cube(MAXWELL, ROUGH, steps);
+  PRINTED(steps,
+          "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 3, 3, -0.01\n%s"
+          "*STEP\n*VISCO, INTEGRATOR=EXPONENTIAL\n0.5, 2.\n%s",
+          first, then);
+  JOB j = run_cube(MAXWELL, ROUGH, steps);
   slips(&j, 0, 0.004, 10);
   for (int k = 1; k <= 4; ++k)
     slips(&j, k, 0.004 + 0.0025 * k, 10 * exp(-0.25 * k));
   all_have(&j, "stress_zz", -10 * exp(-1.0));
   all_have(&j, "ei_zz", -0.01 * (1 - exp(-1.0)));
-  dat e = job_table(&j, "ENERGY", -1);
-  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
-  dat_free(&e);
-  job_end(&j);
+  ck_assert_double_le(
+      fabs(job_value(&j, "ENERGY", -1, "energy_defect_relative")), 1e-10);
 }
-END_TEST
 
 /* The same slip under the pressure of heat: expansion along z alone, 1e-4 times
  * 100 degrees between the top and the floor. */
-START_TEST(cone_with_the_pressure_of_heat) {
-  char step[1024], steps[2000];
+TEST(cone_with_the_pressure_of_heat) {
+  char step[1024];
   patch(step, sizeof step, "t", 0.01, "*t");
-  snprintf(steps, sizeof steps,
-           "*STEP\n*QUASISTATIC\n0.5, 1.\n*TEMPERATURE\nBODY, 100.\n"
-           "*BOUNDARY\nTOP, 3\n%s",
-           step);
-  job j = run_cube("*EXPANSION, TYPE=ORTHO\n0., 0., 1.E-4\n", ROUGH, steps);
+  PRINTED(steps,
+          "*STEP\n*QUASISTATIC\n0.5, 1.\n*TEMPERATURE\nBODY, 100.\n"
+          "*BOUNDARY\nTOP, 3\n%s",
+          step);
+  JOB j = run_cube("*EXPANSION, TYPE=ORTHO\n0., 0., 1.E-4\n", ROUGH, steps);
   slips(&j, 0, 0.002, 5);
   slips(&j, 1, 0.004, 10);
   all_have(&j, "stress_zz", -10);
-  job_end(&j);
 }
-END_TEST
 
 /* Heat closes a gap of 0.004 and presses, sigma = -E (0.01 - 0.004); held, the
  * pressure relaxes; cooled, the gap opens again. */
-START_TEST(gap_closes_relaxes_and_opens) {
-  job j = run_cube(
+TEST(gap_closes_relaxes_and_opens) {
+  JOB j = run_cube(
       MAXWELL "*EXPANSION, TYPE=ORTHO\n0., 0., 1.E-4\n",
       "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., -0.004\n0., 0., 1.\n"
       "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n",
@@ -125,21 +115,17 @@ START_TEST(gap_closes_relaxes_and_opens) {
       "*STEP\n*QUASISTATIC\n1., 1.\n*TEMPERATURE\nBODY, 0.\n*END STEP\n");
   static const double p[] = {1, 6};
   for (int k = 0; k < 7; ++k) {
-    dat t = job_table(&j, "TOTALS", k);
+    DAT t = job_table(&j, "TOTALS", k);
     double expected = k < 2 ? p[k] : k < 6 ? 6 * exp(-0.5 * (k - 1)) : 0;
     ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), expected, 1e-9);
-    dat_free(&t);
   }
   all_have(&j, "stress_zz", 0);
   all_have(&j, "ei_zz", -0.006 * (1 - exp(-2.0)));
-  job_end(&j);
 }
-END_TEST
 
 /* Numbers of a dataset of JOB.h5 into x[n]; how many it has. */
 static int read_field(const job *j, const char *name, double *x, int n) {
-  char path[128];
-  snprintf(path, sizeof path, "%s/%s.h5", j->dir, j->name);
+  PRINTED(path, "%s/%s.h5", j->dir, j->name);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   ck_assert(file >= 0);
   hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
@@ -174,24 +160,23 @@ static void deck_has(const job *j, const char *words) {
 
 /* Pulled by 1, the lower half has a Kelvin-Voigt unit: its strain, which is
  * its alpha, is (1 - exp(-1))/500 at t = 6; the upper half has none. */
-START_TEST(fields_of_creep_are_read_back) {
+TEST(fields_of_creep_are_read_back) {
   enum { MOST = 500 };
   static double ei[MOST], alpha[MOST], number[MOST];
   const double expected = (1 - exp(-1.0)) / 500;
   int flowing = 0;
-  job j = job_begin("fields");
-  job_copy(&j, "tests/regression/mesh/layers.geo");
-  job_write(&j, "fields.inp",
-            "*PARAMETER\nN = 4\n*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.\n*INELASTIC, LAW=KELVIN\n500., 3000.\n"
-            "*MATERIAL, NAME=E\n*ELASTIC\n1000., 0.\n"
-            "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=HARD, MATERIAL=E\n"
-            "*STEP\n*VISCO, INTEGRATOR=RK4\n0.25, 6.\n*BOUNDARY\nBOTTOM, 2\n"
-            "LEFT, 1\n*DSLOAD\nTOP, TY, \"1 + 0*t\"\n*PRINT, ELEMENTS\n"
-            "*OUTPUT, FREQUENCY=0\n*END STEP\n");
+  JOB j =
+      job_with("fields", "tests/regression/mesh/layers.geo",
+               "*PARAMETER\nN = 4\n*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.\n*INELASTIC, LAW=KELVIN\n500., 3000.\n"
+               "*MATERIAL, NAME=E\n*ELASTIC\n1000., 0.\n"
+               "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
+               "*SOLID SECTION, ELSET=HARD, MATERIAL=E\n"
+               "*STEP\n*VISCO, INTEGRATOR=RK4\n0.25, 6.\n*BOUNDARY\nBOTTOM, 2\n"
+               "LEFT, 1\n*DSLOAD\nTOP, TY, \"1 + 0*t\"\n*PRINT, ELEMENTS\n"
+               "*OUTPUT, FREQUENCY=0\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
-  dat d = job_table(&j, "ELEMENTS", -1);
+  DAT d = job_table(&j, "ELEMENTS", -1);
   deck_has(&j, "LAW=KELVIN");
   ck_assert_int_eq(read_field(&j, "/fields/ei_yy/00001", ei, MOST), d.n_row);
   ck_assert_int_eq(read_field(&j, "/fields/alpha_2/00001", alpha, MOST),
@@ -206,10 +191,7 @@ START_TEST(fields_of_creep_are_read_back) {
   }
   ck_assert_int_gt(flowing, 10);
   ck_assert_int_lt(flowing, d.n_row - 10);
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * Q3: p = 10 and g = 3 given, the top led. A start with e^i_yy = 0.002 is
@@ -219,57 +201,45 @@ END_TEST
  * top led by 0.01. Without e^i in u_0 the floor carries 12 in the place of 10.
  */
 static int given_friction(job *j, const char *u_y) {
-  *j = job_begin("given");
-  job_copy(j, "tests/regression/mesh/square.geo");
-  job_write(j, "given.inp",
-            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.\n" MAXWELL
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" FLOOR
-            "*FRICTION, CONTACT=C, LAW=TRESCA\n3.\n"
-            "*CONTACT FORCE, CONTACT=C\n10.\n"
-            "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n"
-            "BODY, 1, \"0.004 + 0.006*y\"\nBODY, 2, \"%s\"\n"
-            "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, 2, 0.002\n"
-            "*STEP\n*VISCO, INTEGRATOR=EULER\n0.5, 2.\n"
-            "*BOUNDARY\nTOP, 1, 1, \"0.01 + 0.01*t\"\nTOP, 2\n"
-            "*DSLOAD\nRIGHT, TY, \"3 + 0*t\"\nLEFT, TY, \"-3 + 0*t\"\n"
-            "*PRINT, CONTACT, ELEMENTS\n*END STEP\n",
-            u_y);
+  *j = job_with("given", "tests/regression/mesh/square.geo",
+                "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+                "*ELASTIC\n1000., 0.\n" MAXWELL
+                "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" FLOOR
+                "*FRICTION, CONTACT=C, LAW=TRESCA\n3.\n"
+                "*CONTACT FORCE, CONTACT=C\n10.\n"
+                "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n"
+                "BODY, 1, \"0.004 + 0.006*y\"\nBODY, 2, \"%s\"\n"
+                "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, 2, 0.002\n"
+                "*STEP\n*VISCO, INTEGRATOR=EULER\n0.5, 2.\n"
+                "*BOUNDARY\nTOP, 1, 1, \"0.01 + 0.01*t\"\nTOP, 2\n"
+                "*DSLOAD\nRIGHT, TY, \"3 + 0*t\"\nLEFT, TY, \"-3 + 0*t\"\n"
+                "*PRINT, CONTACT, ELEMENTS\n*END STEP\n",
+                u_y);
   return job_run(j, "--no-timing");
 }
 
-START_TEST(start_of_given_friction_is_compatible) {
-  job j;
-  int code = given_friction(&j, "0.008*(1 - y)");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat c = job_table(&j, "CONTACT", -1);
+TEST(start_of_given_friction_is_compatible) {
+  JOB j;
+  CK_EXIT(given_friction(&j, "0.008*(1 - y)"), 0, j);
+  DAT c = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < c.n_row; ++i) {
     ck_assert_double_eq_tol(fabs(dat_at(&c, i, "u_t")), 0.004 + 0.007 * 2,
                             1e-9);
     ck_assert_double_eq_tol(dat_at(&c, i, "u_n"), -0.008 - 0.005 * 2, 1e-9);
   }
-  dat_free(&c);
   all_have(&j, "stress_yy", -10);
   all_have(&j, "stress_xy", 3);
   all_have(&j, "ei_yy", 0.002 - 0.005 * 2);
-  char *lst = job_file(&j, "lst");
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "\n  compatible\n"));
-  free(lst);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(start_of_given_friction_is_refused) {
-  job j;
+TEST(start_of_given_friction_is_refused) {
+  JOB j;
   ck_assert_int_eq(given_friction(&j, "0.01*(1 - y)"), 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "P4014"));
   /* 12 - 10 on a node that carries a quarter of the floor. */
   ck_assert_msg(strstr(j.errors, "defect 0.5 ") != NULL, "%s", j.errors);
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("creep_3d", cone_with_relaxing_pressure,
-          cone_with_the_pressure_of_heat, gap_closes_relaxes_and_opens,
-          fields_of_creep_are_read_back, start_of_given_friction_is_compatible,
-          start_of_given_friction_is_refused)
+UNIT_MAIN("creep_3d")

@@ -3,7 +3,6 @@
  * integrator, what contact and friction do there, stiff laws, and that the run
  * itself stays as it is. E = 1000, nu = 0.3, relaxation time 2.
  */
-#include "base/base.h"
 #include "support/square_case.h"
 #include "support/unit.h"
 
@@ -24,26 +23,23 @@ enum { N_ROW = sizeof rows / sizeof *rows, N_POINT = 20 };
 
 /* Root mean square error of the stress that relaxes, n increments over 2. */
 static double error_of(const char *integrator, int n) {
-  char visco[160];
   double sum = 0;
-  snprintf(visco, sizeof visco,
-           "*VISCO, INTEGRATOR=%s\n%.17g, 2.\n"
-           "*PRINT, ELEMENTS, ENERGY, TIME POINTS=T\n*OUTPUT, HDF5=NO\n",
-           integrator, 2.0 / n);
+  PRINTED(visco,
+          "*VISCO, INTEGRATOR=%s\n%.17g, 2.\n"
+          "*PRINT, ELEMENTS, ENERGY, TIME POINTS=T\n*OUTPUT, HDF5=NO\n",
+          integrator, 2.0 / n);
   square_case s = {STEEL, PROPORTIONAL, "CPS3", POINTS, HELD, visco};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   for (int k = 0; k < N_POINT; ++k) {
-    dat d = job_table(&j, "ELEMENTS", 1 + k);
+    DAT d = job_table(&j, "ELEMENTS", 1 + k);
     double t = 1.01 + 0.099 * k;
     ck_assert_double_eq_tol(square_energy(&j, 1 + k, "time"), t, 1e-12);
     sum += pow(dat_at(&d, 0, "stress_yy") - exp(-(t - 1) / 2), 2);
-    dat_free(&d);
   }
-  job_end(&j);
   return sqrt(sum / N_POINT);
 }
 
-START_TEST(points_have_the_order_of_the_integrator) {
+TESTS(points_have_the_order_of_the_integrator, N_ROW) {
   double coarse = error_of(rows[_i].integrator, 16);
   double fine = error_of(rows[_i].integrator, 32);
   if (rows[_i].order == 0) { /* held strains: exact                           */
@@ -52,11 +48,10 @@ START_TEST(points_have_the_order_of_the_integrator) {
   }
   ck_assert_double_eq_tol(log2(coarse / fine), rows[_i].order, 0.1);
 }
-END_TEST
 
 /* Energies at a point are those of an increment that ends there: the balance
  * closes, and what is dissipated lies between the ends. */
-START_TEST(energies_balance_at_points) {
+TEST(energies_balance_at_points) {
   square_case s = {STEEL,
                    DEVIATORIC,
                    "CPE3",
@@ -64,7 +59,7 @@ START_TEST(energies_balance_at_points) {
                    PRESS(10.),
                    "*VISCO, INTEGRATOR=MIDPOINT\n0.5, 1.\n"
                    "*PRINT, ENERGY, TIME POINTS=T\n*PRINT, ENERGY\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   double lost = 0;
   /* Step 1; three points, the first increment, once for both requests ... */
   static const double time[] = {1, 1.1, 1.2, 1.4, 1.5, 1.7, 2};
@@ -76,12 +71,10 @@ START_TEST(energies_balance_at_points) {
     if (k > 0) ck_assert_double_gt(now, lost);
     lost = now;
   }
-  job_end(&j);
 }
-END_TEST
 
 /* Increments of twenty relaxation times: the stress falls all the way. */
-START_TEST(stiff_points_lie_between_the_ends) {
+TEST(stiff_points_lie_between_the_ends) {
   square_case s = {STEEL,
                    PROPORTIONAL,
                    "CPS3",
@@ -89,23 +82,20 @@ START_TEST(stiff_points_lie_between_the_ends) {
                    HELD,
                    "*VISCO, INTEGRATOR=BACKWARD\n40., 80.\n"
                    "*PRINT, ELEMENTS, TIME POINTS=T\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   double last = 1;
   for (int k = 1; k <= 40; ++k) {
-    dat d = job_table(&j, "ELEMENTS", k);
+    DAT d = job_table(&j, "ELEMENTS", k);
     double now = dat_at(&d, 0, "stress_yy");
     ck_assert_double_lt(now, last);
     ck_assert_double_gt(now, 0);
     last = now;
-    dat_free(&d);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* The strains of two Kelvin units are internal variables, their sum is that of
  * the body: at the points as at the ends of the increments. */
-START_TEST(units_add_up_at_points) {
+TEST(units_add_up_at_points) {
   square_case s = {STEEL,
                    "*INELASTIC, LAW=KELVIN\n700., 500.\n700., 1000.\n",
                    "CPS3",
@@ -113,36 +103,32 @@ START_TEST(units_add_up_at_points) {
                    SYMMETRY "*DSLOAD\nTOP, TY, 1.\n",
                    "*VISCO, INTEGRATOR=MIDPOINT\n0.25, 0.5\n"
                    "*PRINT, ELEMENTS, TIME POINTS=T\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   for (int k = 1; k <= 10; ++k) {
-    dat d = job_table(&j, "ELEMENTS", k);
+    DAT d = job_table(&j, "ELEMENTS", k);
     const double sum = dat_at(&d, 0, "ei_yy");
     ck_assert_double_gt(sum, 1e-5);
     ck_assert_double_eq_tol(dat_at(&d, 0, "alpha_2") + dat_at(&d, 0, "alpha_6"),
                             sum, 1e-9 * sum);
-    dat_free(&d);
   }
-  job_end(&j);
 }
-END_TEST
 
 #define SLIDES "*DSLOAD\nRIGHT, P, 6.\n"
 
 static char *contact_table(const job *j, int k) {
   char *text = NULL;
-  dat d = job_table(j, "CONTACT", k);
+  DAT d = job_table(j, "CONTACT", k);
   size_t size;
   FILE *f = open_memstream(&text, &size);
   ck_assert_int_gt(d.n_row, 2);
   for (int i = 0; i < d.n_row * d.n_col; ++i) fprintf(f, "%.12g ", d.value[i]);
   fclose(f);
-  dat_free(&d);
   return text;
 }
 
 /* Without flow the state at a point is that of an increment which ends there:
  * the first of one run with half the length. */
-START_TEST(friction_at_a_point_is_that_of_a_shorter_increment) {
+TEST(friction_at_a_point_is_that_of_a_shorter_increment) {
   square_case s = {
       STEEL,
       "",
@@ -150,21 +136,16 @@ START_TEST(friction_at_a_point_is_that_of_a_shorter_increment) {
       FLOOR(0.2) "*TIME POINTS, NAME=T\n0.5\n",
       PRESS(10.),
       "*QUASISTATIC\n1., 1.\n" SLIDES "*PRINT, CONTACT, TIME POINTS=T\n"};
-  job whole = square_run(&s, 0);
+  JOB whole = square_run(&s, 0);
   s.visco = "*QUASISTATIC\n0.5, 1.\n" SLIDES "*PRINT, CONTACT, FREQUENCY=1\n";
   s.model = FLOOR(0.2);
-  job half = square_run(&s, 0);
-  char *a = contact_table(&whole, 1), *b = contact_table(&half, 1);
+  JOB half = square_run(&s, 0);
+  FREED char *a = contact_table(&whole, 1), *b = contact_table(&half, 1);
   ck_assert_str_eq(a, b);
-  free(a);
-  free(b);
-  job_end(&whole);
-  job_end(&half);
 }
-END_TEST
 
 /* Young's modulus falls with a temperature that rises over the increment. */
-START_TEST(moduli_at_a_point_are_those_of_its_time) {
+TEST(moduli_at_a_point_are_those_of_its_time) {
   square_case s = {"1000., 0.3, 0.\n500., 0.3, 100.",
                    "",
                    "CPS3",
@@ -173,20 +154,18 @@ START_TEST(moduli_at_a_point_are_those_of_its_time) {
                    HELD,
                    "*QUASISTATIC\n1., 1.\n*TEMPERATURE\nBODY, 100.\n"
                    "*PRINT, ELEMENTS, TIME POINTS=T\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   square_all_have(&j, 0, "stress_yy", 1.0, 1e-12);
   square_all_have(&j, 1, "stress_yy", 0.875, 1e-12);
   square_all_have(&j, 2, "stress_yy", 0.625, 1e-12);
   square_all_have(&j, 3, "stress_yy", 0.5, 1e-12);
-  job_end(&j);
 }
-END_TEST
 
 #define PUSHED "*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -1.E-2\n"
 
 /* Points, also within adaptive increments, change nothing else; nor does the
  * matrix of given forces, which each problem has of its own. */
-START_TEST(points_leave_the_run_alone) {
+TEST(points_leave_the_run_alone) {
   static const char *const choice[] = {
       "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1E-3",
       "*VISCO, INTEGRATOR=HEUN, TOLERANCE=1E-3",
@@ -195,30 +174,25 @@ START_TEST(points_leave_the_run_alone) {
   for (int i = 0; i < 5; ++i) {
     char *table[2];
     for (int k = 0; k < 2; ++k) {
-      char visco[200];
-      snprintf(visco, sizeof visco, "%s\n0.4, 1.\n%s%s", choice[i],
-               "*PRINT, CONTACT\n",
-               k == 0 ? "" : "*PRINT, ENERGY, TIME POINTS=T\n");
+      PRINTED(visco, "%s\n0.4, 1.\n%s%s", choice[i], "*PRINT, CONTACT\n",
+              k == 0 ? "" : "*PRINT, ENERGY, TIME POINTS=T\n");
       static const char points[] = "*TIME POINTS, NAME=T\n0.13, 0.77\n";
-      char model[400];
-      snprintf(model, sizeof model, FLOOR(0.1) "%s%s", points,
-               i < 4 ? "" : "*CONTACT FORCE, CONTACT=C\n\"10 + x\"\n");
+      PRINTED(model, FLOOR(0.1) "%s%s", points,
+              i < 4 ? "" : "*CONTACT FORCE, CONTACT=C\n\"10 + x\"\n");
       square_case s = {
           STEEL, DEVIATORIC, "CPE3", model, i < 4 ? PRESS(10.) : PUSHED, visco};
-      job j = square_run(&s, 0);
+      JOB j = square_run(&s, 0);
       table[k] = contact_table(&j, -1);
       if (k == 1) {
         ck_assert_double_eq_tol(square_energy(&j, 1, "time"), 1.13, 1e-12);
         ck_assert_double_eq_tol(square_energy(&j, -1, "time"), 1.77, 1e-12);
       }
-      job_end(&j);
     }
     ck_assert_str_eq(table[0], table[1]);
     free(table[0]);
     free(table[1]);
   }
 }
-END_TEST
 
 /* Errors at a point, of the mesh and of a goal, are those of an increment that
  * ends there, also in the second step, after MESH=END. */
@@ -236,30 +210,25 @@ static char *errors_at(const char *dt, const char *table, const char *points) {
            "*PRINT, %s%s\n",
            dt, table, points);
   square_case s = {STEEL, "", "CPE3", model, PRESS(10.), steps};
-  job j = square_run(&s, 0);
-  dat d = job_table(&j, table, points[0] != '\0' ? -1 : goals ? 0 : 2);
+  JOB j = square_run(&s, 0);
+  DAT d = job_table(&j, table, points[0] != '\0' ? -1 : goals ? 0 : 2);
   FILE *f = open_memstream(&text, &size);
   for (int i = 0; i < d.n_row; ++i)
     fprintf(f, "%.9g ", dat_at(&d, i, goals ? "error" : "mesh_error"));
   fclose(f);
   ck_assert_double_gt(dat_at(&d, 0, goals ? "band" : "mesh_error"), 0);
-  dat_free(&d);
-  job_end(&j);
   return text;
 }
 
-START_TEST(errors_at_a_point_are_those_of_its_time) {
+TESTS(errors_at_a_point_are_those_of_its_time, 2) {
   static const char *const table[] = {"ELEMENTS", "GOALS"};
-  char *at = errors_at("0.5", table[_i], ", TIME POINTS=T");
-  char *end = errors_at("0.25", table[_i], "");
+  FREED char *at = errors_at("0.5", table[_i], ", TIME POINTS=T");
+  FREED char *end = errors_at("0.25", table[_i], "");
   ck_assert_str_eq(at, end);
-  free(at);
-  free(end);
 }
-END_TEST
 
 /* MESH=END of the step before asks for none. */
-START_TEST(no_error_at_a_point_unless_required) {
+TEST(no_error_at_a_point_unless_required) {
   square_case s = {STEEL,
                    "",
                    "CPE3",
@@ -267,27 +236,10 @@ START_TEST(no_error_at_a_point_unless_required) {
                    HELD "*ACCURACY, MESH=END\n",
                    "*QUASISTATIC\n1., 1.\n*ACCURACY, MESH=END\n"
                    "*PRINT, ELEMENTS, TIME POINTS=T\n"};
-  job j = square_run(&s, 0);
-  dat before = job_table(&j, "ELEMENTS", 0), at = job_table(&j, "ELEMENTS", 1);
+  JOB j = square_run(&s, 0);
+  DAT before = job_table(&j, "ELEMENTS", 0), at = job_table(&j, "ELEMENTS", 1);
   ck_assert_int_eq(dat_has(&before, "mesh_error"), 1);
   ck_assert_int_eq(dat_has(&at, "mesh_error"), 0);
-  dat_free(&before);
-  dat_free(&at);
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("dense");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, points_have_the_order_of_the_integrator, 0, N_ROW);
-  tcase_add_test(tests, energies_balance_at_points);
-  tcase_add_test(tests, stiff_points_lie_between_the_ends);
-  tcase_add_test(tests, units_add_up_at_points);
-  tcase_add_test(tests, friction_at_a_point_is_that_of_a_shorter_increment);
-  tcase_add_loop_test(tests, errors_at_a_point_are_those_of_its_time, 0, 2);
-  tcase_add_test(tests, no_error_at_a_point_unless_required);
-  tcase_add_test(tests, moduli_at_a_point_are_those_of_its_time);
-  tcase_add_test(tests, points_leave_the_run_alone);
-  return unit_run("dense", tests);
-}
+UNIT_MAIN("dense")

@@ -5,7 +5,6 @@
  * whole, above an obstacle that moves and turns, touch it and partly leave it.
  * The same runs stopped and gone on with.
  */
-#include "base/base.h"
 #include "support/grid.h"
 #include "support/job.h"
 #include "support/traced.h"
@@ -107,10 +106,10 @@ static job scene_new_job(int dim, double *area) {
   const int n2[] = {6, 2}, n3[] = {3, 3, 1};
   const double length2[] = {2, 1}, length3[] = {2, 1.5, 1};
   job j = job_begin("turned");
-  mesh *m = dim == 3 ? make_grid_3d(n3, length3) : make_grid_2d(n2, length2);
+  OWNED mesh *m =
+      dim == 3 ? make_grid_3d(n3, length3) : make_grid_2d(n2, length2);
   turned_mesh_write(&j, m, &whole_turn[dim - 2]);
   foot_areas(m, area);
-  memory_free(m);
   write_deck(&j, dim);
   return j;
 }
@@ -122,9 +121,8 @@ typedef struct node {
 
 static double cell(const dat *d, int row, int dim, const char *name, int c) {
   static const char *const letters[] = {"x", "y", "z"};
-  char text[40];
   if (c >= dim) return 0;
-  snprintf(text, sizeof text, "%s%s", name, letters[c]);
+  PRINTED(text, "%s%s", name, letters[c]);
   return dat_at(d, row, text);
 }
 
@@ -141,7 +139,7 @@ static double tangent(const dat *d, int row, int dim, const char *name,
 }
 
 static int read_nodes(const job *j, int dim, int k, node *p) {
-  dat d = job_table(j, "CONTACT", k);
+  DAT d = job_table(j, "CONTACT", k);
   ck_assert_int_le(d.n_row, NODES);
   for (int i = 0; i < d.n_row; ++i, ++p) {
     for (int c = 0; c < 3; ++c) {
@@ -159,9 +157,7 @@ static int read_nodes(const job *j, int dim, int k, node *p) {
     p->distance = dat_at(&d, i, "slip_distance");
     p->status = dat_at(&d, i, "status");
   }
-  int n = d.n_row;
-  dat_free(&d);
-  return n;
+  return d.n_row;
 }
 
 /* What adds up over the increments. */
@@ -206,7 +202,7 @@ static void check_node(int dim, const node *p, double distance, double scale) {
 }
 
 static void check_works(const job *j, int k, const sums *s) {
-  dat e = job_table(j, "ENERGY", k), l = job_table(j, "LOOP", k);
+  DAT e = job_table(j, "ENERGY", k), l = job_table(j, "LOOP", k);
   double scale = fmax(fabs(s->normal), s->end);
   NEAR(dat_at(&e, 0, "friction_work"), s->trapezoidal, scale);
   NEAR(dat_at(&e, 0, "friction_work_end"), s->end, scale);
@@ -215,14 +211,12 @@ static void check_works(const job *j, int k, const sums *s) {
   NEAR(dat_at(&l, 0, "friction_work_end"), s->end, scale);
   NEAR(dat_at(&l, 0, "loop_area"), s->end, scale);
   ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
-  dat_free(&e);
-  dat_free(&l);
 }
 
 /* All of the contact; of a loop the mean motions too. */
 static void check_totals(const job *j, int dim, int k, const node *p, int n,
                          const double *area, double scale) {
-  dat t = job_table(j, "TOTALS", k);
+  DAT t = job_table(j, "TOTALS", k);
   double f[3] = {0}, m[3] = {0}, r[3] = {0}, count[3] = {0}, closed = 0;
   double a[3], at[3], torque = 0;
   torque_axis(dim, 0.2 * (k + 1), at, a);
@@ -251,12 +245,11 @@ static void check_totals(const job *j, int dim, int k, const node *p, int n,
   static const char *const word[] = {"open", "slip", "stick"};
   for (int c = 0; c < 3; ++c)
     ck_assert_double_eq(dat_at(&t, 0, word[c]), count[c]);
-  dat_free(&t);
 }
 
 static void check_loop(const job *j, int dim, int k, const node *p, int n,
                        const double *area, const sums *s) {
-  dat l = job_table(j, "LOOP", k);
+  DAT l = job_table(j, "LOOP", k);
   double whole = 0, way[2] = {0}, u[2] = {0};
   for (int i = 0; i < n; ++i) {
     whole += area[i];
@@ -271,27 +264,23 @@ static void check_loop(const job *j, int dim, int k, const node *p, int n,
   }
   NEAR(dat_at(&l, 0, "angle"),
        (dim == 3 ? 1 : 0.01) * angle_rate * fmax(0.2 * (k + 1) - 0.5, 0), 1);
-  dat_free(&l);
 }
 
 /* The zones cover the foot. */
 static void check_zones(const job *j, int dim, int k) {
-  dat z = job_table(j, "ZONES", k);
-  NEAR(dat_sum(&z, "area"), dim == 2 ? 2 : 3, 1);
-  dat_free(&z);
+  NEAR(job_sum(j, "ZONES", k, "area"), dim == 2 ? 2 : 3, 1);
 }
 
 /* Nothing else acts on the body. */
 static void check_balance(const job *j, int dim, int k, const node *p, int n,
                           double scale) {
-  dat d = job_table(j, "REACTIONS", k);
+  DAT d = job_table(j, "REACTIONS", k);
   for (int c = 0; c < dim; ++c) {
     double sum = 0;
     for (int i = 0; i < d.n_row; ++i) sum += cell(&d, i, dim, "reaction_", c);
     for (int i = 0; i < n; ++i) sum += p[i].f[c];
     NEAR(sum, 0, scale);
   }
-  dat_free(&d);
 }
 
 /* The line of an increment in JOB.sta counts the nodes. */
@@ -309,7 +298,7 @@ static void check_counts(const job *j, int k, const node *p, int n) {
   free(sta);
 }
 
-START_TEST(results_are_those_of_the_nodes) {
+TESTS(results_are_those_of_the_nodes, 2) {
   const int dim = 2 + _i;
   static node nodes[INCREMENTS + 1][NODES];
   static sums sum;
@@ -317,9 +306,8 @@ START_TEST(results_are_those_of_the_nodes) {
   int n = 0;
   memset(nodes, 0, sizeof nodes);
   memset(&sum, 0, sizeof sum);
-  job j = scene_new_job(dim, area);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  JOB j = scene_new_job(dim, area);
+  CK_EXIT(job_run(&j, ""), 0, j);
   for (int k = 1; k <= INCREMENTS; ++k)
     n = read_nodes(&j, dim, k - 1, nodes[k]);
   for (int k = 1; k <= INCREMENTS; ++k) {
@@ -339,8 +327,6 @@ START_TEST(results_are_those_of_the_nodes) {
     }
   }
   for (int c = 0; c < 3; ++c) ck_assert_double_gt(seen[c], 3);
-  job_end(&j);
 }
-END_TEST
 
-UNIT_LOOP("derived", results_are_those_of_the_nodes, 2)
+UNIT_MAIN_FOR("derived", 10 * UNIT_SECONDS)

@@ -3,7 +3,6 @@
  * read back to the same echo, and running it gives the same tables to the last
  * byte.
  */
-#include "base/base.h"
 #include "model/keyword/keyword.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -14,9 +13,9 @@ enum { TEXT = 4096 };
 
 /* Echo of a deck; the caller frees it. */
 static char *echo_of(const char *path) {
-  message_log *log = NULL;
-  deck *d = NULL;
-  model *m = NULL;
+  OWNED message_log *log = NULL;
+  OWNED deck *d = NULL;
+  OWNED model *m = NULL;
   char *text = NULL;
   size_t size;
   ck_assert_int_eq(message_log_new(&log), OK);
@@ -27,46 +26,37 @@ static char *echo_of(const char *path) {
   FILE *out = open_memstream(&text, &size);
   model_echo(out, m);
   fclose(out);
-  memory_free(m);
-  memory_free(d);
-  memory_free(log);
   return text;
 }
 
 /* The echo of the echo; "echo" is read from the folder of j. */
 static void reads_back(const job *j, const char *what, const char *echo) {
-  char path[TEXT];
-  snprintf(path, sizeof path, "%s/echo.inp", j->dir);
+  PRINTED(path, "%s/echo.inp", j->dir);
   job_write(j, "echo.inp", "%s", echo);
-  char *again = echo_of(path);
+  FREED char *again = echo_of(path);
   ck_assert_msg(strcmp(echo, again) == 0, "%s:\n%s\n----\n%s", what, echo,
                 again);
-  free(again);
 }
 
-START_TEST(echo_of_every_example_reads_back) {
+TEST(echo_of_every_example_reads_back) {
   glob_t found;
-  job j = job_begin("echo");
+  JOB j = job_begin("echo");
   ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &found), 0);
   ck_assert_int_eq(
       glob("tests/regression/bad/bad.inp", GLOB_APPEND, NULL, &found), 0);
   ck_assert_uint_ge(found.gl_pathc, 8);
   for (size_t i = 0; i < found.gl_pathc; ++i) {
-    char *echo = echo_of(found.gl_pathv[i]);
+    FREED char *echo = echo_of(found.gl_pathv[i]);
     reads_back(&j, found.gl_pathv[i], echo);
-    free(echo);
   }
   globfree(&found);
-  job_end(&j);
 }
-END_TEST
 
 /* Names with commas, equals signs, blanks and stars; an include in a folder of
  * its own; fixed columns; continued lines; negative values in expressions. */
-START_TEST(echo_of_odd_spellings_reads_back) {
-  char path[TEXT], sub[TEXT];
-  job j = job_begin("odd");
-  snprintf(sub, sizeof sub, "mkdir '%s/sub'", j.dir);
+TEST(echo_of_odd_spellings_reads_back) {
+  JOB j = job_begin("odd");
+  PRINTED(sub, "mkdir '%s/sub'", j.dir);
   ck_assert_int_eq(system(sub), 0);
   job_write(&j, "sub/mesh.inc", "*MESH, FILE=\"a, b=c.msh\", SCALE=1.D-3\n");
   job_write(&j, "odd.inp",
@@ -96,8 +86,8 @@ START_TEST(echo_of_odd_spellings_reads_back) {
             "\"G, 1\", 1, , \"x*y\"\nF-1, 2, 2, , A B\n"
             "*solver, method=newton\n*print, contact, group=F-1, nodes\n"
             "*end step\n");
-  snprintf(path, sizeof path, "%s/odd.inp", j.dir);
-  char *echo = echo_of(path);
+  PRINTED(path, "%s/odd.inp", j.dir);
+  FREED char *echo = echo_of(path);
   ck_assert_ptr_nonnull(strstr(echo, "FILE=\"sub/a, b=c.msh\""));
   ck_assert_ptr_nonnull(strstr(echo, "One, two = \"three\", <H> <Q>"));
   ck_assert_ptr_nonnull(strstr(echo, "NAME=\"Steel, mild = soft ** x\""));
@@ -105,31 +95,24 @@ START_TEST(echo_of_odd_spellings_reads_back) {
   ck_assert_ptr_nonnull(strstr(echo, "*CREEP, LAW=TIME, SHIFT=NONE\n"));
   ck_assert_ptr_nonnull(strstr(echo, "SHIFT=WLF, T_REF=20, C1=17.4"));
   reads_back(&j, "odd", echo);
-  free(echo);
-  job_end(&j);
 }
-END_TEST
 
 /* An absolute name in an include in a folder of its own is left as it is. */
-START_TEST(echo_leaves_absolute_names_alone) {
-  char path[TEXT], sub[TEXT];
-  job j = job_begin("absolute");
-  snprintf(sub, sizeof sub, "mkdir '%s/sub'", j.dir);
+TEST(echo_leaves_absolute_names_alone) {
+  JOB j = job_begin("absolute");
+  PRINTED(sub, "mkdir '%s/sub'", j.dir);
   ck_assert_int_eq(system(sub), 0);
   job_write(&j, "sub/problem.inc", "*CONDENSED PROBLEM, FILE=/a/b.txt\n");
   job_write(&j, "absolute.inp", "*INCLUDE, INPUT=sub/problem.inc\n");
-  snprintf(path, sizeof path, "%s/absolute.inp", j.dir);
-  char *echo = echo_of(path);
+  PRINTED(path, "%s/absolute.inp", j.dir);
+  FREED char *echo = echo_of(path);
   ck_assert_msg(strstr(echo, "FILE=/a/b.txt") != NULL, "%s", echo);
-  free(echo);
-  job_end(&j);
 }
-END_TEST
 
 /* The part of a listing that is the deck; the caller frees it. */
 static char *listed_deck(const job *j) {
   static const char start[] = "DECK\n----\n", end[] = "\nMODEL\n-----\n";
-  char *listing = job_file(j, "lst");
+  FREED char *listing = job_file(j, "lst");
   ck_assert_ptr_nonnull(listing);
   char *from = strstr(listing, start);
   ck_assert_ptr_nonnull(from);
@@ -137,9 +120,7 @@ static char *listed_deck(const job *j) {
   char *to = strstr(from, end);
   ck_assert_ptr_nonnull(to);
   *to = '\0';
-  char *text = strdup(from);
-  free(listing);
-  return text;
+  return strdup(from);
 }
 
 typedef struct example {
@@ -157,40 +138,32 @@ static const example examples[] = {
     {"input/hertz_sphere", "hertz_sphere", "hertz_sphere.geo", ""}};
 
 static void copy_file(const job *j, const char *folder, const char *name) {
-  char path[TEXT];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
+  PRINTED(path, "%s/%s", folder, name);
   job_copy(j, path);
 }
 
-START_TEST(running_the_echo_gives_the_same_tables) {
+TEST(running_the_echo_gives_the_same_tables) {
   for (size_t i = 0; i < sizeof examples / sizeof *examples; ++i) {
     const example *e = &examples[i];
-    char name[64], words[128];
-    job first = job_begin(e->name), second = job_begin(e->name);
+    char name[64];
+    JOB first = job_begin(e->name), second = job_begin(e->name);
     snprintf(name, sizeof name, "%s.inp", e->name);
     copy_file(&first, e->folder, name);
     copy_file(&first, e->folder, e->mesh);
     copy_file(&second, e->folder, e->mesh);
-    snprintf(words, sizeof words, "%s --no-timing", e->words);
+    PRINTED(words, "%s --no-timing", e->words);
     ck_assert_msg(job_run(&first, words) == 0, "%s", first.errors);
-    char *deck_text = listed_deck(&first);
+    FREED char *deck_text = listed_deck(&first);
     job_write(&second, name, "%s", deck_text);
     ck_assert_msg(job_run(&second, "--no-timing") == 0, "%s", second.errors);
     char *table[] = {job_file(&first, "dat"), job_file(&second, "dat")};
     ck_assert_uint_gt(strlen(table[0]), 500);
     ck_assert_msg(strcmp(table[0], table[1]) == 0, "%s", e->name);
-    char *again = listed_deck(&second);
+    FREED char *again = listed_deck(&second);
     ck_assert_str_eq(deck_text, again);
-    free(again);
-    free(deck_text);
     free(table[0]);
     free(table[1]);
-    job_end(&first);
-    job_end(&second);
   }
 }
-END_TEST
 
-UNIT_MAIN("echo", echo_of_every_example_reads_back,
-          echo_of_odd_spellings_reads_back, echo_leaves_absolute_names_alone,
-          running_the_echo_gives_the_same_tables)
+UNIT_MAIN("echo")

@@ -2,7 +2,6 @@
  * The effect plan: the same before a run and in its listing, in JSON, off where
  * nothing calls for an effect, and what is expected against what is counted.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -21,8 +20,7 @@ static job block(const char *model, const char *step, const char *words) {
             "*STEP\n*QUASISTATIC\n<DT>, 1.0\n*BOUNDARY\nSYMMETRY, 1, 1\n"
             "*DSLOAD\nTOP, P, 50.\nLEFT, P, 20.\n%s*END STEP\n",
             model, step);
-  int code = job_run(&j, words);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, words), 0, j);
   return j;
 }
 
@@ -44,16 +42,15 @@ static char *effect_line(const job *j, const char *heading,
 }
 
 static int is_on(const job *j, const char *effect) {
-  char *line = effect_line(j, "EFFECTS", effect);
+  FREED char *line = effect_line(j, "EFFECTS", effect);
   int on = strncmp(line + 29, "on ", 3) == 0;
   ck_assert(on || strncmp(line + 29, "off", 3) == 0);
-  free(line);
   return on;
 }
 
-START_TEST(check_prints_the_plan_of_the_listing) {
-  job a = block("", bare, ""), b = block("", bare, "--check");
-  char *listing = job_file(&a, "lst");
+TEST(check_prints_the_plan_of_the_listing) {
+  JOB a = block("", bare, ""), b = block("", bare, "--check");
+  FREED char *listing = job_file(&a, "lst");
   char *from = strstr(b.text, "effects\n"), *to;
   ck_assert_ptr_nonnull(from);
   from = strchr(from, '\n') + 1;
@@ -61,34 +58,25 @@ START_TEST(check_prints_the_plan_of_the_listing) {
   ck_assert_ptr_nonnull(to);
   to[strcspn(to, "\n") + 1] = '\0';
   ck_assert_msg(strstr(listing, from) != NULL, "%s", from);
-  free(listing);
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
 /* An effect is named with the card that called for it, file and line. */
-START_TEST(plan_names_file_and_line) {
-  job j = block("", bare, "--check");
+TEST(plan_names_file_and_line) {
+  JOB j = block("", bare, "--check");
   ck_assert_ptr_nonnull(
       strstr(j.text, "*FRICTION, LAW=COULOMB on contact FOOT, block.inp:11\n"));
   ck_assert_ptr_nonnull(strstr(j.text, "*CONTACT, NAME=FOOT, block.inp:10\n"));
   ck_assert_ptr_nonnull(strstr(j.text, " 9 nodes "));
-  job_end(&j);
 }
-END_TEST
 
 /* Not of nodes that are loaded: 9 on the side that is held. */
-START_TEST(reactions_are_of_supports_alone) {
-  job j = block("", "*PRINT, REACTIONS\n", "");
-  dat r = job_table(&j, "REACTIONS", -1);
+TEST(reactions_are_of_supports_alone) {
+  JOB j = block("", "*PRINT, REACTIONS\n", "");
+  DAT r = job_table(&j, "REACTIONS", -1);
   ck_assert_int_eq(r.n_row, 9);
   for (int i = 0; i < r.n_row; ++i)
     ck_assert_double_eq(dat_at(&r, i, "x"), 40.0);
-  dat_free(&r);
-  job_end(&j);
 }
-END_TEST
 
 /* A step that asks for nothing, and the beginning of the next, to line 26. */
 #define LATER                                                         \
@@ -96,7 +84,7 @@ END_TEST
   "*STATIC\n"
 
 /* The card that counts, of several. */
-START_TEST(plan_names_the_reason) {
+TEST(plan_names_the_reason) {
   static const struct {
     const char *step, *words; /* the cards of the step from line 21 on */
     const char *effect, *reason;
@@ -148,20 +136,16 @@ START_TEST(plan_names_the_reason) {
       {LATER "*DLOAD\nBODY, BX, 1.\n", "", "body forces",
        "*DLOAD on group BODY, block.inp:28"}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-    char words[40], name[40];
-    snprintf(words, sizeof words, "--check %s", rows[i].words);
-    job j = block("", rows[i].step, words);
-    snprintf(name, sizeof name, "\n  %s  ", rows[i].effect);
+    PRINTED(words, "--check %s", rows[i].words);
+    JOB j = block("", rows[i].step, words);
+    PRINTED(name, "\n  %s  ", rows[i].effect);
     const char *at = strstr(j.text, name);
     ck_assert_msg(at != NULL, "%s", rows[i].effect);
-    char *line = strndup(at + 1, strcspn(at + 1, "\n"));
+    FREED char *line = strndup(at + 1, strcspn(at + 1, "\n"));
     ck_assert_msg(strstr(line, rows[i].reason) != NULL, "%s\n%s",
                   rows[i].reason, line);
-    free(line);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Calls and bytes of an effect in the closing table, whose lines end with
  * calls, seconds, bytes; its line. */
@@ -198,8 +182,7 @@ static int next_row(const char **at, int width, char *name) {
 /* The first row of a table, below its heading, the line under it and that of
  * the columns. */
 static const char *first_row(const char *text, const char *heading) {
-  char key[80];
-  snprintf(key, sizeof key, "\n%s\n", heading);
+  PRINTED(key, "\n%s\n", heading);
   const char *at = strstr(text, key);
   ck_assert_msg(at != NULL, "no %s", heading);
   for (int k = 0; k < 4; ++k) at = strchr(at, '\n') + 1;
@@ -213,10 +196,9 @@ static void check_off(const job *j, const char *const *stages) {
   for (const char *at = first_row(text, "COST OF THE EFFECTS");
        next_row(&at, 26, name); ++rows) {
     long calls, bytes;
-    char *line = cost_of(j, name, &calls, &bytes);
+    FREED char *line = cost_of(j, name, &calls, &bytes);
     if (strncmp(line + 29, "off", 3) == 0)
       ck_assert_msg(calls == 0 && bytes == 0, "%s", line);
-    free(line);
   }
   ck_assert_int_gt(rows, 30);
   rows = 0;
@@ -240,7 +222,7 @@ static void check_off(const job *j, const char *const *stages) {
 #define TOUCHING "contact surface", "condensed stiffness", "contact solver"
 
 /* One increment of a smooth block, then a path of a rough one. */
-START_TEST(no_stage_runs_uncalled) {
+TEST(no_stage_runs_uncalled) {
   static const char *const smooth[] = {ALWAYS, TOUCHING, NULL};
   static const char *const rough[] = {ALWAYS,
                                       TOUCHING,
@@ -255,7 +237,6 @@ START_TEST(no_stage_runs_uncalled) {
   check_off(&j, rough);
   job_end(&j);
 }
-END_TEST
 
 /* 1: a row of that name, a group behind it or not, is on and called. */
 static int is_called(const job *j, const char *effect) {
@@ -265,31 +246,29 @@ static int is_called(const job *j, const char *effect) {
        next_row(&at, 26, name);) {
     long calls, bytes;
     if (strncmp(name, effect, strlen(effect)) != 0) continue;
-    char *line = cost_of(j, name, &calls, &bytes);
+    FREED char *line = cost_of(j, name, &calls, &bytes);
     called |= strncmp(line + 29, "on ", 3) == 0 &&
               (calls > 0 || strstr(line, "part of") != NULL);
-    free(line);
   }
   free(text);
   return called;
 }
 
 static job two_blocks(void) {
-  job j = job_begin("pair");
-  job_copy(&j, "tests/regression/mesh/pair.geo");
-  job_write(&j, "pair.inp",
-            "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
-            "*CONTACT PAIR, NAME=P\nUNDER, OVER\n*STEP\n*STATIC\n"
-            "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n"
-            "*PRINT, SIF\n*END STEP\n");
+  job j =
+      job_with("pair", "tests/regression/mesh/pair.geo",
+               "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+               "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+               "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+               "*CONTACT PAIR, NAME=P\nUNDER, OVER\n*STEP\n*STATIC\n"
+               "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n"
+               "*PRINT, SIF\n*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   return j;
 }
 
 /* Each row of the plan is on in one of these decks, and called there. */
-START_TEST(every_effect_is_called_for) {
+TEST(every_effect_is_called_for) {
   static const char *const decks[][2] = {
       {"*EXPANSION\n1.2D-5\n*DENSITY\n7.8D-9\n",
        "*TEMPERATURE\nBODY, 10.\n*DLOAD\nBODY, GRAV, 9810., 0., -1.\n"
@@ -322,27 +301,24 @@ START_TEST(every_effect_is_called_for) {
   free(text);
   for (int k = 0; k < DECKS; ++k) job_end(&j[k]);
 }
-END_TEST
 
 /* Largest difference of a column of the tables CONTACT of two runs over the
  * largest entry of its kind (one kind: lengths, forces, pressures). */
 static double apart(const job *a, const job *b, const char *const *names) {
   double most = 0.0, size = 0.0;
-  dat x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
+  DAT x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
   ck_assert_int_eq(x.n_row, y.n_row);
   for (; *names != NULL; ++names)
     for (int k = 0; k < x.n_row; ++k) {
       most = fmax(most, fabs(dat_at(&x, k, *names) - dat_at(&y, k, *names)));
       size = fmax(size, fabs(dat_at(&x, k, *names)));
     }
-  dat_free(&x);
-  dat_free(&y);
   return most / size;
 }
 
 /* Without friction only normals are condensed; the same deck with its condensed
  * problems written has all unknowns, and the same answer. */
-START_TEST(no_friction_no_tangential_unknown) {
+TEST(no_friction_no_tangential_unknown) {
   static const char *const lengths[] = {"u_n", "u_t", "gap", NULL};
   static const char *const forces[] = {"f_n", "f_t", NULL};
   static const char *const steps[] = {"*PRINT, CONTACT\n",
@@ -351,10 +327,9 @@ START_TEST(no_friction_no_tangential_unknown) {
   job j[2];
   for (int k = 0; k < 2; ++k) j[k] = block("", steps[k], "-D MU=0");
   long calls, bytes;
-  char *line = cost_of(&j[0], "tangential unknowns", &calls, &bytes);
+  FREED char *line = cost_of(&j[0], "tangential unknowns", &calls, &bytes);
   ck_assert_msg(!is_on(&j[0], "tangential unknowns"), "%s", line);
   ck_assert_msg(calls == 0 && bytes == 0, "%s", line);
-  free(line);
   ck_assert(is_on(&j[1], "tangential unknowns"));
   ck_assert_double_eq(job_told(&j[0], "contact_unknowns"), 9.0);
   ck_assert_double_eq(job_told(&j[1], "contact_unknowns"), 18.0);
@@ -362,20 +337,18 @@ START_TEST(no_friction_no_tangential_unknown) {
   ck_assert_double_le(apart(&j[0], &j[1], forces), 1e-12);
   for (int k = 0; k < 2; ++k) job_end(&j[k]);
 }
-END_TEST
 
 /* A block between smooth walls, pressed from above in two steps: by symmetry
  * nothing rubs. One pass of the solver an increment, and one factor in all,
  * whatever the method. */
-START_TEST(nothing_rubs_no_loop_one_factor) {
+TEST(nothing_rubs_no_loop_one_factor) {
   static const char *const methods[] = {"AUTO", "NEWTON", "SOR", "AUGLAG"};
   for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k) {
-    char step[160];
-    snprintf(step, sizeof step,
-             "*BOUNDARY\nLEFT, 1, 1\n*SOLVER, METHOD=%s\n*END STEP\n*STEP\n"
-             "*QUASISTATIC\n<DT>, 1.0\n*DSLOAD\nTOP, P, 70.\n",
-             methods[k]);
-    job j = block("", step, "");
+    PRINTED(step,
+            "*BOUNDARY\nLEFT, 1, 1\n*SOLVER, METHOD=%s\n*END STEP\n*STEP\n"
+            "*QUASISTATIC\n<DT>, 1.0\n*DSLOAD\nTOP, P, 70.\n",
+            methods[k]);
+    JOB j = block("", step, "");
     char *text = job_file(&j, "json"), *at = text;
     int increments = 0;
     for (; (at = strstr(at, "\"iterations\": ")) != NULL; ++at, ++increments)
@@ -385,16 +358,14 @@ START_TEST(nothing_rubs_no_loop_one_factor) {
     ck_assert_int_eq(job_stage(&j, "factorisation", NULL), 1);
     ck_assert_int_eq(job_stage(&j, "condensed stiffness", NULL), 1);
     free(text);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* JSON: calls expected and counted of the effects that tell both. */
-START_TEST(calls_are_as_expected) {
+TEST(calls_are_as_expected) {
   static const char *const files[] = {"", "*PRINT, CONTACT, TOTALS\n"};
   for (size_t k = 0; k < 2; ++k) {
-    job j = block("", files[k], "");
+    JOB j = block("", files[k], "");
     char *text = job_file(&j, "json"), *at = text;
     int compared = 0;
     double sum = 0.0;
@@ -413,13 +384,11 @@ START_TEST(calls_are_as_expected) {
     ck_assert_int_gt(compared, 5);
     ck_assert_double_eq_tol(sum, 100.0, 1e-9);
     free(text);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* JSON: the rows of each table, of all or of a group, are those written. */
-START_TEST(rows_are_as_expected) {
+TEST(rows_are_as_expected) {
   static const char *const requests[] = {
       "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, ENERGY, REACTIONS, LOOP\n",
       "*PRINT, NODES, GROUP=TOP\n*PRINT, ELEMENTS, GROUP=BODY\n"};
@@ -431,45 +400,32 @@ START_TEST(rows_are_as_expected) {
                                           {"reactions", "REACTIONS"},
                                           {"loops", "LOOP"}};
   for (int k = 0; k < 2; ++k) {
-    job j = block("", requests[k], "");
+    JOB j = block("", requests[k], "");
     char *text = job_file(&j, "json"), key[60];
     for (int i = 0; i < (k == 0 ? 7 : 2); ++i) {
-      dat t = job_table(&j, tables[i][1], -1);
+      DAT t = job_table(&j, tables[i][1], -1);
       snprintf(key, sizeof key, "\"table of %s\"", tables[i][0]);
       const char *at = strstr(strstr(text, key), "\"rows\": ");
       ck_assert_msg(strtol(strchr(at, ':') + 1, NULL, 10) == t.n_row,
                     "%s: %d, %.16s", tables[i][1], t.n_row, at);
-      dat_free(&t);
     }
     free(text);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Without the cost columns two runs give the same bytes. */
-START_TEST(no_timing_leaves_calls_alone) {
-  job a = block("", bare, "--no-timing"), b = block("", bare, "--no-timing");
-  char *line = effect_line(&a, "COST OF THE EFFECTS", "unilateral contact");
+TEST(no_timing_leaves_calls_alone) {
+  JOB a = block("", bare, "--no-timing"), b = block("", bare, "--no-timing");
+  FREED char *line =
+      effect_line(&a, "COST OF THE EFFECTS", "unilateral contact");
   double share;
   long expected, calls;
   char rest;
   ck_assert_int_eq(
       sscanf(line + 32, "%lf %ld %ld %c", &share, &expected, &calls, &rest), 3);
   ck_assert_int_eq(calls, 4);
-  char *one = job_file(&a, "lst"), *two = job_file(&b, "lst");
+  FREED char *one = job_file(&a, "lst"), *two = job_file(&b, "lst");
   ck_assert_str_eq(one, two);
-  free(one);
-  free(two);
-  free(line);
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
-UNIT_MAIN("effects", check_prints_the_plan_of_the_listing,
-          plan_names_file_and_line, plan_names_the_reason,
-          reactions_are_of_supports_alone, no_stage_runs_uncalled,
-          every_effect_is_called_for, no_friction_no_tangential_unknown,
-          nothing_rubs_no_loop_one_factor, calls_are_as_expected,
-          rows_are_as_expected, no_timing_leaves_calls_alone)
+UNIT_MAIN("effects")

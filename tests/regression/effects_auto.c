@@ -2,7 +2,6 @@
  * *EFFECTS, MODE=AUTO: the answer is that of MODE=CALLED within TOL, with what
  * was left out and what was taken back.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -61,10 +60,7 @@ static int fate(const job *j, const char *effect) {
 }
 
 static double total_of(const job *j, const char *column) {
-  dat d = job_table(j, "TOTALS", -1);
-  double value = dat_sum(&d, column);
-  dat_free(&d);
-  return value;
+  return job_sum(j, "TOTALS", -1, column);
 }
 
 /* Pressures of the nodes, resultants and energy of both, in parts of their
@@ -96,9 +92,8 @@ static double difference(const job *a, const job *b) {
 static void stays(const scene *s, const char *effect) {
   scene automatic = *s;
   automatic.effects = "*EFFECTS, MODE=AUTO\n";
-  job j = run_scene(&automatic);
+  JOB j = run_scene(&automatic);
   ck_assert_int_eq(fate(&j, effect), 0);
-  job_end(&j);
 }
 
 /* Both modes; what became of the effect, and that the answers agree. */
@@ -107,21 +102,19 @@ static void compare(const scene *s, const char *effect, int expected,
   scene called = *s, automatic = *s;
   called.effects = "";
   automatic.effects = "*EFFECTS, MODE=AUTO\n";
-  job a = run_scene(&automatic), b = run_scene(&called);
+  JOB a = run_scene(&automatic), b = run_scene(&called);
   ck_assert_msg(fate(&a, effect) == expected, "%s, %s%s: %d", effect,
                 s->material, s->loads, fate(&a, effect));
   ck_assert_int_eq(fate(&b, effect), 0);
   double found = difference(&a, &b);
   ck_assert_msg(found <= tol, "%s, %s%s: %g", effect, s->material, s->loads,
                 found);
-  job_end(&a);
-  job_end(&b);
 }
 
 static const char coulomb[] = "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n";
 
 /* The strain of 50 MPa is 3.8e-4: 1e-4 of it is 3.2e-3 K at 1.2e-5/K. */
-START_TEST(small_thermal_strain_is_left_out) {
+TEST(small_thermal_strain_is_left_out) {
   const scene small = {"*EXPANSION\n1.2D-5\n",
                        coulomb,
                        "*TEMPERATURE\nBODY, 1.D-4\n",
@@ -140,30 +133,27 @@ START_TEST(small_thermal_strain_is_left_out) {
   beside.loads = above.loads;
   compare(&beside, "inelastic strain", 1, 1e-5);
 }
-END_TEST
 
 /* A support that moves the top by 0.5 strains the block, 40 long and 30 high,
  * by 0.5/40; heat by 1.2e-9. */
-START_TEST(strain_of_a_moved_support_is_over_the_size) {
+TEST(strain_of_a_moved_support_is_over_the_size) {
   const scene s = {"*EXPANSION\n1.2D-5\n",
                    coulomb,
                    "*BOUNDARY\nTOP, 2, 2, -0.5\n*TEMPERATURE\nBODY, 1.D-4\n",
                    "*EFFECTS, MODE=AUTO\n",
                    0.2,
                    NULL};
-  job j = run_scene(&s);
+  JOB j = run_scene(&s);
   char *text = job_file(&j, "lst"), *at = strstr(text, "left out: thermal");
   ck_assert_ptr_nonnull(at);
   ck_assert_ptr_nonnull(at = strstr(at, "at most "));
   ck_assert_double_eq_tol(strtod(at + 8, NULL), 9.6e-8, 1e-15);
   free(text);
-  job_end(&j);
 }
-END_TEST
 
 /* Without lateral contraction heat alone makes the block rub: little beside
  * the pressure, all of the friction. */
-START_TEST(heat_that_makes_all_friction_stays) {
+TEST(heat_that_makes_all_friction_stays) {
   const scene s = {"*EXPANSION\n1.2D-5\n",
                    "*FRICTION, CONTACT=FOOT, LAW=TRESCA\n15.\n",
                    "*TEMPERATURE\nBODY, 1.D-4\n",
@@ -172,9 +162,8 @@ START_TEST(heat_that_makes_all_friction_stays) {
                    NULL};
   compare(&s, "thermal strain", -1, 1e-12);
 }
-END_TEST
 
-START_TEST(slow_relaxation_is_left_out) {
+TEST(slow_relaxation_is_left_out) {
   const scene slow = {
       "*INELASTIC, LAW=MAXWELL\n1.D6\n", coulomb, "", "", 0.2, NULL};
   scene fast = slow;
@@ -186,11 +175,10 @@ START_TEST(slow_relaxation_is_left_out) {
   crept.law = "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, 1, 1.E-6\n";
   stays(&crept, "inelastic strain");
 }
-END_TEST
 
 /* A ramp of 1 s in four increments: strain lags behind by the creep of the
  * last 0.1 ms of 0.25 s. In the place of the law E E1/(E + E1). */
-START_TEST(law_at_its_end_is_left_out) {
+TEST(law_at_its_end_is_left_out) {
   const scene fast = {"*INELASTIC, LAW=ZENER\n65.D3, 0.65\n",
                       coulomb,
                       "LEFT, P, 20.\n",
@@ -215,11 +203,10 @@ START_TEST(law_at_its_end_is_left_out) {
   stays(&slow, "inelastic strain");
   stays(&fluid, "inelastic strain");
 }
-END_TEST
 
 /* Sheared along its side, the block passes a threshold that the loads do not.
  */
-START_TEST(law_below_its_threshold_is_left_out) {
+TEST(law_below_its_threshold_is_left_out) {
   const scene below = {
       "*INELASTIC, LAW=BINGHAM\n200., 1.D3\n", coulomb, "", "", 0.2, NULL};
   scene corner = below;
@@ -228,11 +215,10 @@ START_TEST(law_below_its_threshold_is_left_out) {
   compare(&below, "inelastic strain", 1, 1e-12);
   compare(&corner, "inelastic strain", -1, 1e-12);
 }
-END_TEST
 
 /* Flow near a corner only: the law is left out elsewhere, and all is the same.
  */
-START_TEST(elements_below_the_threshold_are_left_out) {
+TEST(elements_below_the_threshold_are_left_out) {
   const scene corner = {"*INELASTIC, LAW=BINGHAM\n100., 1.D5\n",
                         coulomb,
                         "LEFT, TY, -120.\n",
@@ -244,10 +230,9 @@ START_TEST(elements_below_the_threshold_are_left_out) {
   compare(&corner, "inelastic strain", 1, 1e-8);
   stays(&everywhere, "inelastic strain");
 }
-END_TEST
 
 /* Nodes are 5 apart, those of the side of a high block 10. */
-START_TEST(average_within_an_element_is_local) {
+TEST(average_within_an_element_is_local) {
   const scene within = {
       "",
       "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=4.9\n0.3\n",
@@ -266,10 +251,9 @@ START_TEST(average_within_an_element_is_local) {
   height = 60.0;
   compare(&side, "nonlocal average", 1, 1e-12);
 }
-END_TEST
 
 /* Without lateral expansion nothing slips, unless it is pushed. */
-START_TEST(friction_without_slip_is_left_out) {
+TEST(friction_without_slip_is_left_out) {
   const scene still = {"", coulomb, "", "", 0.0, NULL};
   scene pushed = still, expands = still;
   pushed.loads = "LEFT, P, 20.\n";
@@ -292,42 +276,36 @@ START_TEST(friction_without_slip_is_left_out) {
   held = "TOP, 2, 2, -0.01"; /* sideways by friction alone */
   stays(&still, "friction");
 }
-END_TEST
 
 /* The increment in which a body responds at once to what flows then ends no
  * step: FREQUENCY=0 has one table. */
-START_TEST(response_at_once_ends_no_step) {
+TEST(response_at_once_ends_no_step) {
   const scene s = {"*INELASTIC, LAW=MAXWELL\n4.\n",
                    coulomb,
                    "LEFT, P, 5., ON\n",
                    "",
                    0.2,
                    NULL};
-  job j = run_scene(&s);
-  char *text = job_file(&j, "dat");
+  JOB j = run_scene(&s);
+  FREED char *text = job_file(&j, "dat");
   const char *first = strstr(text, "increment 5 time 1.0000000000000000E+000 ");
   ck_assert_msg(first != NULL, "%.300s", text);
   ck_assert_ptr_eq(strstr(text, "table ENERGY"), strstr(first, "table ENERGY"));
-  free(text);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(nothing_is_left_out_unless_asked) {
+TEST(nothing_is_left_out_unless_asked) {
   const scene s = {
       "*EXPANSION\n1.2D-5\n",    coulomb, "*TEMPERATURE\nBODY, 1.D-6\n",
       "*EFFECTS, MODE=CALLED\n", 0.2,     NULL};
-  job j = run_scene(&s);
+  JOB j = run_scene(&s);
   ck_assert_int_eq(fate(&j, "thermal strain"), 0);
-  job_end(&j);
 }
-END_TEST
 
 /* Two equal increments without friction, f and u in the end: its bound is twice
  * the roots of the work on the slip, sqrt(W/4) + sqrt(W/2) for W the sum of
  * mu f |u|, over the root of twice the strain energy. */
 static void bound_is_that_of_the_work(const job *j, double mu) {
-  dat c = job_table(j, "CONTACT", -1), e = job_table(j, "ENERGY", -1);
+  DAT c = job_table(j, "CONTACT", -1), e = job_table(j, "ENERGY", -1);
   const int plane = dat_has(&c, "u_t");
   double work = 0.0;
   for (int i = 0; i < c.n_row; ++i) {
@@ -339,33 +317,28 @@ static void bound_is_that_of_the_work(const job *j, double mu) {
   ck_assert_int_eq(fate(j, "friction"), 1);
   ck_assert_double_eq_tol(
       job_told(j, "bound") / (2.0 * (0.5 + sqrt(0.5)) * sqrt(work)), 1, 1e-6);
-  dat_free(&c);
-  dat_free(&e);
 }
 
-START_TEST(bound_of_friction_is_that_of_the_work_at_its_nodes) {
+TEST(bound_of_friction_is_that_of_the_work_at_its_nodes) {
   const scene s = {"",
                    "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.D-8\n",
                    "LEFT, P, 20.\n",
                    "*EFFECTS, MODE=AUTO, TOL=0.01\n",
                    0.2,
                    "0.5"};
-  job j = run_scene(&s);
+  JOB j = run_scene(&s);
   bound_is_that_of_the_work(&j, 1e-8);
-  job_end(&j);
 }
-END_TEST
 
 /* Messages of trials are not those of the run: once each, and its exit code. */
 static void is_free(const scene *s) {
   int code;
-  job j = try_scene(s, &code);
+  JOB j = try_scene(s, &code);
   ck_assert_msg(code == 6, "exit %d: %s", code, j.errors);
   ck_assert_ptr_nonnull(strstr(j.errors, "\n1 error"));
-  job_end(&j);
 }
 
-START_TEST(body_that_is_free_to_move_ends_all_trials) {
+TEST(body_that_is_free_to_move_ends_all_trials) {
   const scene small = {
       "*EXPANSION\n1.2D-5\n",  "",  "*TEMPERATURE\nBODY, 1.D-4\n",
       "*EFFECTS, MODE=AUTO\n", 0.2, NULL};
@@ -377,34 +350,31 @@ START_TEST(body_that_is_free_to_move_ends_all_trials) {
   is_free(&small);
   is_free(&threshold);
 }
-END_TEST
 
 static job run_cube(const char *effects) {
-  job j = job_begin("cube");
-  job_copy(&j, "tests/regression/mesh/cube.geo");
-  job_write(&j, "cube.inp",
-            "*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.D-8\n"
-            "%s*AMPLITUDE, NAME=ON\n"
-            "0., 0., 1., 1.\n*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
-            "TOP, 1, 1, 1.D-3, ON\nTOP, 2, 2, 5.D-3, ON\n"
-            "TOP, 3, 3, -0.01, ON\n*PRINT, CONTACT, ENERGY, FREQUENCY=0\n"
-            "*END STEP\n",
-            effects);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j =
+      job_with("cube", "tests/regression/mesh/cube.geo",
+               "*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+               "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+               "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+               "*FRICTION, CONTACT=C, LAW=COULOMB\n1.D-8\n"
+               "%s*AMPLITUDE, NAME=ON\n"
+               "0., 0., 1., 1.\n*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
+               "TOP, 1, 1, 1.D-3, ON\nTOP, 2, 2, 5.D-3, ON\n"
+               "TOP, 3, 3, -0.01, ON\n*PRINT, CONTACT, ENERGY, FREQUENCY=0\n"
+               "*END STEP\n",
+               effects);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
 /* The same in space, of slip along both directions of the contact. The change
  * is that of the nodes that slip, over the largest motion, 0.01. */
-START_TEST(bound_of_friction_is_that_of_the_work_in_space) {
+TEST(bound_of_friction_is_that_of_the_work_in_space) {
   static const char *const columns[] = {"u_t1", "u_t2"};
-  job j = run_cube("*EFFECTS, MODE=AUTO, TOL=0.01\n"), called = run_cube("");
-  dat without = job_table(&j, "CONTACT", -1),
+  JOB j = run_cube("*EFFECTS, MODE=AUTO, TOL=0.01\n"), called = run_cube("");
+  DAT without = job_table(&j, "CONTACT", -1),
       with = job_table(&called, "CONTACT", -1);
   double most = 0;
   bound_is_that_of_the_work(&j, 1e-8);
@@ -413,12 +383,7 @@ START_TEST(bound_of_friction_is_that_of_the_work_in_space) {
       most = fmax(most, fabs(dat_at(&with, i, columns[k]) -
                              dat_at(&without, i, columns[k])));
   ck_assert_double_eq_tol(job_told(&j, "change") / (most / 0.01), 1, 0.01);
-  dat_free(&with);
-  dat_free(&without);
-  job_end(&j);
-  job_end(&called);
 }
-END_TEST
 
 /* Strips pressed down by 0.01, some of them warm. */
 typedef struct strips {
@@ -427,29 +392,27 @@ typedef struct strips {
 } strips;
 
 static job run_strips(const strips *s, int automatic) {
-  job j = job_begin("strips");
-  job_copy(&j, "tests/regression/mesh/strips.geo");
-  job_write(&j, "strips.inp",
-            "*PARAMETER\nN = 5\n*MESH, FILE=strips.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., %.17g\n*EXPANSION\n1.2E-5\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s%s*STEP\n*STATIC\n"
-            "*BOUNDARY\nTOP, 1, 1, %.17g\nTOP, 2, 2, -0.01\n*TEMPERATURE\n"
-            "%s\n*PRINT, CONTACT\n*END STEP\n",
-            s->nu, s->friction, automatic ? "*EFFECTS, MODE=AUTO\n" : "",
-            s->shear, s->warm);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j = job_with(
+      "strips", "tests/regression/mesh/strips.geo",
+      "*PARAMETER\nN = 5\n*MESH, FILE=strips.geo\n*MATERIAL, NAME=M\n"
+      "*ELASTIC\n1000., %.17g\n*EXPANSION\n1.2E-5\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s%s*STEP\n*STATIC\n"
+      "*BOUNDARY\nTOP, 1, 1, %.17g\nTOP, 2, 2, -0.01\n*TEMPERATURE\n"
+      "%s\n*PRINT, CONTACT\n*END STEP\n",
+      s->nu, s->friction, automatic ? "*EFFECTS, MODE=AUTO\n" : "", s->shear,
+      s->warm);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
 /* The middle strip of five gets warm: the change is that of the forces of its
  * nodes over the largest force, the others keep theirs. */
-START_TEST(change_is_that_of_the_nodes_it_changes_most) {
+TEST(change_is_that_of_the_nodes_it_changes_most) {
   const strips s = {0, 0, "", "MIDDLE, 0.05"};
-  job a = run_strips(&s, 0), b = run_strips(&s, 1);
-  dat with = job_table(&a, "CONTACT", -1),
+  JOB a = run_strips(&s, 0), b = run_strips(&s, 1);
+  DAT with = job_table(&a, "CONTACT", -1),
       without = job_table(&b, "CONTACT", -1);
   double largest = 0, most = 0;
   for (int i = 0; i < without.n_row; ++i) {
@@ -462,31 +425,21 @@ START_TEST(change_is_that_of_the_nodes_it_changes_most) {
   /* E alpha T over the pressure, E u */
   ck_assert_double_eq_tol(job_told(&b, "stress") / (1.2e-5 * 0.05 / 0.01), 1,
                           1e-6);
-  dat_free(&with);
-  dat_free(&without);
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
 /* Friction of both halves is opposite: its sum, of a slight shear, changes by
  * more than the friction of any node. */
-START_TEST(change_is_that_of_the_sum_of_friction) {
+TEST(change_is_that_of_the_sum_of_friction) {
   const strips s = {0.3, 1e-4, "*FRICTION, CONTACT=C, LAW=COULOMB\n0.9\n",
                     "LAST, 0.005"};
-  job a = run_strips(&s, 0), b = run_strips(&s, 1);
-  dat with = job_table(&a, "CONTACT", -1),
+  JOB a = run_strips(&s, 0), b = run_strips(&s, 1);
+  DAT with = job_table(&a, "CONTACT", -1),
       without = job_table(&b, "CONTACT", -1);
   const double sum = dat_sum(&without, "f_t");
   const double change = fabs(dat_sum(&with, "f_t") - sum) / fabs(sum);
   ck_assert_double_gt(change, 1e-5);
   ck_assert_double_eq_tol(job_told(&b, "change") / change, 1, 1e-3);
-  dat_free(&with);
-  dat_free(&without);
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
 static double uniform(unsigned *seed) {
   *seed = *seed * 1664525u + 1013904223u;
@@ -494,10 +447,10 @@ static double uniform(unsigned *seed) {
 }
 
 /* Whatever is left out, the answer is that of CALLED within TOL. */
-START_TEST(random_scenes_agree) {
+TEST(random_scenes_agree) {
   unsigned seed = 7;
   for (int k = 0; k < 3; ++k) {
-    char material[200], law[100], loads[100];
+    char material[200];
     double nu = uniform(&seed) < 0.3 ? 0.0 : 0.4 * uniform(&seed);
     snprintf(material, sizeof material,
              "*EXPANSION\n1.2D-5\n*INELASTIC, LAW=%s\n",
@@ -509,31 +462,17 @@ START_TEST(random_scenes_agree) {
     else
       snprintf(material + used, sizeof material - used, "%.6e, 3.\n",
                3.8e-4 / rate / 125e3);
-    snprintf(law, sizeof law, "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n%.6e\n",
-             pow(10.0, -8.0 + 8.0 * uniform(&seed)));
-    snprintf(loads, sizeof loads, "LEFT, P, %.6f\n*TEMPERATURE\nBODY, %.6e\n",
-             20.0 * uniform(&seed), pow(10.0, -6.0 + 5.0 * uniform(&seed)));
+    PRINTED(law, "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n%.6e\n",
+            pow(10.0, -8.0 + 8.0 * uniform(&seed)));
+    PRINTED(loads, "LEFT, P, %.6f\n*TEMPERATURE\nBODY, %.6e\n",
+            20.0 * uniform(&seed), pow(10.0, -6.0 + 5.0 * uniform(&seed)));
     const scene s = {material, law, loads, "", nu, NULL};
     scene automatic = s;
     automatic.effects = "*EFFECTS, MODE=AUTO, TOL=1e-3\n";
-    job a = run_scene(&automatic), b = run_scene(&s);
+    JOB a = run_scene(&automatic), b = run_scene(&s);
     double found = difference(&a, &b);
     ck_assert_msg(found <= 1e-3, "scene %d: %g", k, found);
-    job_end(&a);
-    job_end(&b);
   }
 }
-END_TEST
 
-UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
-          strain_of_a_moved_support_is_over_the_size,
-          heat_that_makes_all_friction_stays, slow_relaxation_is_left_out,
-          law_at_its_end_is_left_out, elements_below_the_threshold_are_left_out,
-          law_below_its_threshold_is_left_out,
-          average_within_an_element_is_local, friction_without_slip_is_left_out,
-          bound_of_friction_is_that_of_the_work_at_its_nodes,
-          bound_of_friction_is_that_of_the_work_in_space,
-          change_is_that_of_the_nodes_it_changes_most,
-          change_is_that_of_the_sum_of_friction, response_at_once_ends_no_step,
-          body_that_is_free_to_move_ends_all_trials,
-          nothing_is_left_out_unless_asked, random_scenes_agree)
+UNIT_MAIN("effects_auto")

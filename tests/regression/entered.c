@@ -4,7 +4,6 @@
  * said to be gives the energy of what enters, which has a closed form in the
  * depth (E11/2 width depth^2, or force depth under forces alone).
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/msh_write.h"
@@ -27,23 +26,20 @@ static const double E11 = 1000.0 * 0.7 / (1.3 * 0.4);
 static double entered_share(job *j, const char *cards) {
   job_write(j, "block.inp",
             "*MESH, FILE=block.msh\n%s*ACCURACY, MESH=YES\n*END STEP\n", cards);
-  const int code = job_run(j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
+  CK_EXIT(job_run(j, ""), 0, *j);
   const double share = job_told(j, "mesh_error_percent") / 100;
   return share * share / (1.0 - share * share);
 }
 
 static double share_of_block(int two, const char *cards) {
-  job j = job_begin("block");
+  JOB j = job_begin("block");
   block_file_write(&j, (int[]){2, 2}, (double[]){2.0, 1.0}, two);
-  const double share = entered_share(&j, cards);
-  job_end(&j);
-  return share;
+  return entered_share(&j, cards);
 }
 
 /* Layers 1 % shorter grow to the bump below; the energy is that of the material
  * there and of its thickness. */
-START_TEST(bump_in_a_plane_layer) {
+TEST(bump_in_a_plane_layer) {
   const double depth = 0.02 + 0.3 / 0.7 * 0.01;
   const double stress = 0.5 * (1000 + 500) / 0.91 * 0.01 * 0.01;
   const double share = share_of_block(
@@ -56,7 +52,6 @@ START_TEST(bump_in_a_plane_layer) {
   ck_assert_double_eq_tol(share, 0.5 * E11 * depth * depth / stress,
                           1e-6 * share);
 }
-END_TEST
 
 /* A disk under pressure at its rim, between a wall that does not enter and the
  * bumps of two floors on its second ring of 1 to 2. */
@@ -70,53 +65,47 @@ static const char disk[] =
     "*CONTACT, NAME=E, GROUP=CONTACT, OBSTACLE=Q\n"
     "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2\n*DSLOAD\nSYMMETRY, P, 10.\n";
 
-START_TEST(bumps_in_a_disk) {
+TEST(bumps_in_a_disk) {
   const double q = 10, depth = 0.02 + 0.6 * q / 1000;
   const double share = share_of_block(0, disk);
   const double energy = 2 * 0.5 * E11 * 2 * M_PI * 1.5 * depth * depth;
   ck_assert_double_eq_tol(share, energy / (0.7 * q * q / 1000 * 4 * M_PI),
                           1e-6 * share);
 }
-END_TEST
 
 /* A box of 2 x 1 x 3 that is pressed along x; the floor is two triangles, one
  * with a bump or both with one along x. */
-START_TEST(bumps_in_a_box) {
+TEST(bumps_in_a_box) {
   const double q = 10, depth = 0.02 + 0.3 * q / 1000;
   for (int n = 1; n <= 2; ++n) {
-    char path[100], cards[600];
-    job j = job_begin("block");
-    mesh *m = make_grid_3d((int[]){1, 1, 1}, (double[]){2.0, 1.0, 3.0});
-    snprintf(path, sizeof path, "%s/block.msh", j.dir);
+    JOB j = job_begin("block");
+    OWNED mesh *m = make_grid_3d((int[]){1, 1, 1}, (double[]){2.0, 1.0, 3.0});
+    PRINTED(path, "%s/block.msh", j.dir);
     msh_write(path, m);
-    memory_free(m);
-    snprintf(cards, sizeof cards,
-             MATERIAL("M", "1000.",
-                      "0.3") "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" OBSTACLE
-                             "GAP\n\"0.03-0.05*exp(-50*(z-0.9)^2%s)\"" TOUCHES
-                             "BOTTOM\n*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, "
-                             "2\nFRONT, 3\n"
-                             "*DSLOAD\nRIGHT, P, 10.\n",
-             n == 1 ? "-50*(x-1.3)^2" : "");
+    PRINTED(cards,
+            MATERIAL("M", "1000.",
+                     "0.3") "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" OBSTACLE
+                            "GAP\n\"0.03-0.05*exp(-50*(z-0.9)^2%s)\"" TOUCHES
+                            "BOTTOM\n*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, "
+                            "2\nFRONT, 3\n"
+                            "*DSLOAD\nRIGHT, P, 10.\n",
+            n == 1 ? "-50*(x-1.3)^2" : "");
     const double share = entered_share(&j, cards);
     const double energy = n * 0.5 * E11 * sqrt(3.0) * depth * depth;
     ck_assert_double_eq_tol(share, energy / (0.5 * q * q / 1000 * 6),
                             1e-6 * share);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A block under pressure on its three nodes; energy: J. */
 static void check_pressed(const char *gap, const char *more, const char *step,
                           double energy) {
-  char cards[600];
-  snprintf(cards, sizeof cards,
-           MATERIAL("M", "1000.",
-                    "0.") "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" OBSTACLE
-                          "GAP\n\"%s\"" TOUCHES
-                          "CONTACT\n%s*STEP\n%s*DSLOAD\nTOP, P, 1.\n",
-           gap, more, step);
+  PRINTED(cards,
+          MATERIAL("M", "1000.",
+                   "0.") "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" OBSTACLE
+                         "GAP\n\"%s\"" TOUCHES
+                         "CONTACT\n%s*STEP\n%s*DSLOAD\nTOP, P, 1.\n",
+          gap, more, step);
   const double share = share_of_block(0, cards);
   ck_assert_double_eq_tol(share, energy / (0.5 / 1000 * 2),
                           1e-6 * share + 1e-12);
@@ -124,7 +113,7 @@ static void check_pressed(const char *gap, const char *more, const char *step,
 
 /* A bump below each edge: forces do no more work than they have. Wear takes as
  * much off the body between the nodes as there. */
-START_TEST(bumps_below_a_block_that_contact_holds) {
+TEST(bumps_below_a_block_that_contact_holds) {
   check_pressed("-0.01*sin(pi*x)^2", "", "*STATIC\n*BOUNDARY\nLEFT, 1\n",
                 2 * 2.0 * 0.01);
   check_pressed("-0.01*sin(pi*x)^2", "*WEAR, CONTACT=C, COEFFICIENT=0.01\n",
@@ -132,11 +121,10 @@ START_TEST(bumps_below_a_block_that_contact_holds) {
                 "TOP, 1, 1, 0.1\n",
                 2 * 2.0 * 0.01);
 }
-END_TEST
 
 /* A support holds it, which has a node 0.003 in the obstacle: that is no error
  * of the edge next to it. */
-START_TEST(bumps_below_a_block_that_supports_hold) {
+TEST(bumps_below_a_block_that_supports_hold) {
   double depth = 0.0;
   for (double x = 0.0; x < 1.0; x += 1e-5)
     depth = fmax(depth, 0.01 * pow(sin(M_PI * x), 2) + 0.003 * (x - 1.0));
@@ -144,14 +132,12 @@ START_TEST(bumps_below_a_block_that_supports_hold) {
                 "*STATIC\n*BOUNDARY\nLEFT, 1\nLEFT, 2, 2, \"-0.1-0.001*y\"\n",
                 0.5 * 1000 * (depth * depth + 0.01 * 0.01));
 }
-END_TEST
 
 /* Under a given force the nodes are in the obstacle too. */
-START_TEST(given_forces_enter_without_an_error) {
+TEST(given_forces_enter_without_an_error) {
   check_pressed("-0.01*sin(pi*x)^2", "*CONTACT FORCE, CONTACT=C\n1.\n",
                 "*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2\n", 0.0);
 }
-END_TEST
 
 /* ---- round floors ---------------------------------------------------------
  */
@@ -198,10 +184,9 @@ static double depth_at(const floor_case *f, int kind, double b) {
 
 /* The floor is two chords of an arc from its axis of symmetry on. */
 static double floor_mesh(const job *j, int kind, floor_case *f) {
-  mesh *m = make_grid_2d((int[]){2, 1}, (double[]){2.0, TALL});
+  OWNED mesh *m = make_grid_2d((int[]){2, 1}, (double[]){2.0, TALL});
   const double way = kind & HOLLOW ? -1.0 : 1.0;
   double area = 0.0, high[3];
-  char path[100];
   for (int i = 0; i < 3; ++i) {
     m->x[2 * i] = m->x[2 * i + 6] = R * sin(i * TURN);
     m->x[2 * i + 1] = high[i] = way * R * (1 - cos(i * TURN));
@@ -217,17 +202,16 @@ static double floor_mesh(const job *j, int kind, floor_case *f) {
     f->at[c] = c == 0 ? R * sin(TURN / 2) : way * R * (1 - cos(TURN / 2));
     f->out[c] = f->at[c] - 0.5 * (f->x[0][c] + f->x[1][c]);
   }
-  snprintf(path, sizeof path, "%s/block.msh", j->dir);
+  PRINTED(path, "%s/block.msh", j->dir);
   msh_write(path, m);
-  memory_free(m);
   return area;
 }
 
 /* Of one floor; the obstacle enters its chord by 0.02 or its arc. */
 static void check_floor(int kind) {
-  job j = job_begin("block");
+  JOB j = job_begin("block");
   floor_case f;
-  char obstacle[200], cards[600];
+  char obstacle[200];
   const double area = floor_mesh(&j, kind, &f);
   double depth = 0.0;
   if (kind & CHORD) {
@@ -245,13 +229,13 @@ static void check_floor(int kind) {
              "GAP\n\"0.03-0.05*exp(-200*((x-%.17g)^2+(y-%.17g)^2))\"", f.at[0],
              f.at[1]);
   }
-  snprintf(cards, sizeof cards,
-           MATERIAL("M", "1000.",
-                    "0.") "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" OBSTACLE
-                          "%s" TOUCHES
-                          "BOTTOM\n*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2\n"
-                          "*DSLOAD\nBOTTOM, P, 5.\nRIGHT, P, 5.\n",
-           obstacle);
+  PRINTED(cards,
+          MATERIAL("M", "1000.",
+                   "0.") "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n" OBSTACLE
+                         "%s" TOUCHES
+                         "BOTTOM\n*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2\n"
+                         "*DSLOAD\nBOTTOM, P, 5.\nRIGHT, P, 5.\n",
+          obstacle);
   for (double b = 0.0; b < 1.0; b += 1e-5)
     depth = fmax(depth, depth_at(&f, kind, b));
   if (kind == (CHORD | HOLLOW)) depth = 0.0;
@@ -259,17 +243,12 @@ static void check_floor(int kind) {
   const double right = 0.5 * 1000 * depth * depth / (Q * Q / 1000 * area);
   ck_assert_msg(fabs(share - right) <= 1e-6 * right + 1e-12, "%d: %g for %g",
                 kind, share, right);
-  job_end(&j);
 }
 
 /* A formula is at the arc that the edge stands for, a cylinder at the edge,
  * which passes it where the body is hollow. */
-START_TEST(obstacles_below_round_floors) {
+TEST(obstacles_below_round_floors) {
   for (int kind = 0; kind < 4; ++kind) check_floor(kind);
 }
-END_TEST
 
-UNIT_MAIN("entered", bump_in_a_plane_layer, bumps_in_a_disk, bumps_in_a_box,
-          bumps_below_a_block_that_contact_holds,
-          bumps_below_a_block_that_supports_hold,
-          given_forces_enter_without_an_error, obstacles_below_round_floors)
+UNIT_MAIN("entered")

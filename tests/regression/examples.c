@@ -7,7 +7,6 @@
  * The runs end at the first invalid operation, division by zero or overflow of
  * floating point (tests/preload).
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/sums.h"
 #include "support/unit.h"
@@ -112,9 +111,9 @@ static void write_plan(const char *path, const char *text) {
 
 /* The effect plan, to the letter. */
 static void compare_plan(const job *j, const char *name) {
-  char path[256], expected[8192];
-  char *found = section(j, "EFFECTS");
-  snprintf(path, sizeof path, "tests/regression/plans/%s.txt", name);
+  char expected[8192];
+  FREED char *found = section(j, "EFFECTS");
+  PRINTED(path, "tests/regression/plans/%s.txt", name);
   if (updates()) write_plan(path, found);
   FILE *file = fopen(path, "r");
   ck_assert_msg(file != NULL, "%s cannot be read", path);
@@ -123,12 +122,11 @@ static void compare_plan(const job *j, const char *name) {
   expected[n] = '\0';
   ck_assert_msg(strcmp(found, expected) == 0, "%s: the plan is now\n%s", path,
                 found);
-  free(found);
 }
 
 /* What is off has neither run nor allocated. */
 static void check_off(const job *j, const char *name) {
-  char *text = section(j, "COST OF THE EFFECTS");
+  FREED char *text = section(j, "COST OF THE EFFECTS");
   int n = 0;
   for (char *at = strtok(text, "\n"); at != NULL; at = strtok(NULL, "\n")) {
     double share = 1.0, cpu = 1.0;
@@ -140,7 +138,6 @@ static void check_off(const job *j, const char *name) {
     ++n;
   }
   ck_assert_int_gt(n, 5);
-  free(text);
 }
 
 /* Meshes and results are the same on every x86-64: kernels of OpenBLAS and of
@@ -159,18 +156,16 @@ static void spread(sums *s, const char *path) {
   const size_t n = __builtin_cpu_supports("avx512f") ? 4 : 3;
   for (size_t i = 0; i < n; ++i) {
     setenv("OPENBLAS_CORETYPE", kernels[i], 1);
-    job j = job_deck(path, words_of(path));
+    JOB j = job_deck(path, words_of(path));
     sums other = sums_of(&j);
     sums_spread(s, &other);
     sums_free(&other);
-    job_end(&j);
   }
   set_kernels();
 }
 
 static void compare_sums(const job *j, const char *path) {
-  char file[256];
-  snprintf(file, sizeof file, "tests/regression/sums/%s.txt", j->name);
+  PRINTED(file, "tests/regression/sums/%s.txt", j->name);
   sums s = sums_of(j);
   if (updates()) {
     spread(&s, path);
@@ -227,10 +222,8 @@ static void check_xml(const job *j, const char *path) {
 /* First row of table number k. */
 static double first_of(const job *j, const char *table, int k,
                        const char *column) {
-  dat d = job_table(j, table, k);
-  double value = dat_at(&d, 0, column);
-  dat_free(&d);
-  return value;
+  DAT d = job_table(j, table, k);
+  return dat_at(&d, 0, column);
 }
 
 /* Half-width of the contact, a^2 = 4 P R (1 + t/tau)/(pi E*), 40 increments of
@@ -248,7 +241,7 @@ static void lee_radok(const job *j) {
 
 /* Steady stresses of a power law at every radius; their scale is p. */
 static void steady_tube(const job *j, double n) {
-  dat d = job_table(j, "ELEMENTS", -1);
+  DAT d = job_table(j, "ELEMENTS", -1);
   const double p = 100, down = pow(2, 2 / n) - 1;
   for (int i = 0; i < d.n_row; ++i) {
     double power = pow(2 / dat_at(&d, i, "r"), 2 / n);
@@ -260,7 +253,6 @@ static void steady_tube(const job *j, double n) {
                             0.01 * p);
   }
   ck_assert_int_gt(d.n_row, 79);
-  dat_free(&d);
 }
 
 static void norton_ring(const job *j) { steady_tube(j, 5); }
@@ -341,7 +333,7 @@ static void tempered_strip(const job *j) {
   fclose(file);
   ck_assert_int_eq(n, 41);
   for (int i = 0; i < n; ++i) scale = fmax(scale, fabs(stress[i]));
-  dat d = job_table(j, "ELEMENTS", -1);
+  DAT d = job_table(j, "ELEMENTS", -1);
   for (int i = 0; i < d.n_row; ++i) {
     double at = dat_at(&d, i, "y") * (n - 1);
     int k = (int)at;
@@ -349,7 +341,6 @@ static void tempered_strip(const job *j) {
     ck_assert_double_eq_tol(dat_at(&d, i, "stress_xx"), expected, 0.01 * scale);
   }
   ck_assert_int_ge(d.n_row, 40);
-  dat_free(&d);
 }
 
 static const struct {
@@ -366,7 +357,7 @@ static const struct {
 static void run_deck(const char *path, int n, const line *lines) {
   const char *name = strrchr(path, '/') + 1;
   int compared = 0;
-  job j = job_begin(name);
+  JOB j = job_begin(name);
   int code = job_run_deck(&j, path, words_of(path));
   ck_assert_msg(code == 0, "%s: exit %d: %s", path, code, j.errors);
   check_balance(&j, path);
@@ -382,7 +373,6 @@ static void run_deck(const char *path, int n, const line *lines) {
   ck_assert_msg(compared > 0, "no line for %s in reference.txt", path);
   for (size_t k = 0; k < sizeof over_time / sizeof *over_time; ++k)
     if (strcmp(over_time[k].deck, name) == 0) over_time[k].check(&j);
-  job_end(&j);
 }
 
 /* The sanitisers must be the first that is loaded: no traps then. */
@@ -394,46 +384,38 @@ static void set_traps(void) {
 #endif
 }
 
-START_TEST(every_example_gives_the_values_of_its_table) {
+TEST(every_example_gives_the_values_of_its_table) {
   glob_t decks;
   set_traps();
   set_kernels();
   ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &decks), 0);
   for (size_t i = 0; i < decks.gl_pathc; ++i) {
     line lines[MAX];
-    char deck[256], table[256];
-    snprintf(deck, sizeof deck, "%s", decks.gl_pathv[i]);
+    PRINTED(deck, "%s", decks.gl_pathv[i]);
     *strrchr(deck, '.') = '\0';
     int folder = (int)(strrchr(deck, '/') - deck);
-    snprintf(table, sizeof table, "%.*s/reference.txt", folder, deck);
+    PRINTED(table, "%.*s/reference.txt", folder, deck);
     run_deck(deck, read_lines(table, lines), lines);
   }
   globfree(&decks);
 }
-END_TEST
 
 /* With other numbers than in the table. */
 static void run_other(const char *name, const char *words,
                       void (*check)(const job *j)) {
-  char deck[96];
-  job j = job_begin(name);
-  snprintf(deck, sizeof deck, "input/%s/%s", name, name);
+  JOB j = job_begin(name);
+  PRINTED(deck, "input/%s/%s", name, name);
   int code = job_run_deck(&j, deck, words);
   ck_assert_msg(code == 0, "%s: exit %d: %s", name, code, j.errors);
   check(&j);
-  job_end(&j);
 }
 
-START_TEST(half_width_grows_like_the_compliance) {
+TEST(half_width_grows_like_the_compliance) {
   run_other("lee_radok", "", lee_radok);
 }
-END_TEST
 
-START_TEST(tube_of_another_power_law_becomes_steady) {
+TEST(tube_of_another_power_law_becomes_steady) {
   run_other("norton_ring", "-D EXPONENT=3 -D A=1E-11", norton_ring_3);
 }
-END_TEST
 
-UNIT_MAIN("examples", every_example_gives_the_values_of_its_table,
-          half_width_grows_like_the_compliance,
-          tube_of_another_power_law_becomes_steady)
+UNIT_MAIN("examples")

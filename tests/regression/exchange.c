@@ -2,7 +2,6 @@
  * Discrete problems: written by one run and read by another, made here in the
  * layout of FCLIB, plain LCPs; their verdicts.
  */
-#include "base/base.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/fclib_file.h"
@@ -32,7 +31,7 @@ static double largest(int n, const double *x) {
 static void compare(const job *j, const char *one, const char *other,
                     const char *name) {
   int n, n_other;
-  double *a = take(j, one, name, &n), *b = take(j, other, name, &n_other);
+  FREED double *a = take(j, one, name, &n), *b = take(j, other, name, &n_other);
   ck_assert_int_eq(n, n_other);
   ck_assert_int_gt(n, 0);
   double scale = largest(n, a);
@@ -40,8 +39,6 @@ static void compare(const job *j, const char *one, const char *other,
   for (int k = 0; k < n; ++k)
     ck_assert_msg(fabs(a[k] - b[k]) <= 1e-10 * scale, "%s[%d]: %.15g, %.15g",
                   name, k, a[k], b[k]);
-  free(a);
-  free(b);
 }
 
 /* The file by itself: its solution solves its problem. Rows of W are columns
@@ -86,23 +83,21 @@ static void round_trip(job *j, const char *solver, int carried) {
   for (int c = 0; c < 3; ++c) count[c] = job_told(j, counted[c]);
   count[1] -= carried;
   count[2] += carried;
-  dat was = job_table(j, "CONTACT", -1);
+  DAT was = job_table(j, "CONTACT", -1);
   job_write(j, "back.inp",
             "*CONDENSED PROBLEM, FILE=%s_condensed_00002.h5\n*STEP\n"
             "*SOLVER, TOL=1e-13%s\n*OUTPUT, CONDENSED=FCLIB\n*PRINT, CONTACT\n"
             "*END STEP\n",
             j->name, solver);
-  char first[64], name[32];
-  snprintf(first, sizeof first, "%s_condensed_00002.h5", j->name);
+  char name[32];
+  PRINTED(first, "%s_condensed_00002.h5", j->name);
   strcpy(name, j->name);
   strcpy(j->name, "back");
   ck_assert_msg(job_run(j, "") == 0, "%s", j->errors);
   for (int c = 0; c < 3; ++c)
     ck_assert_double_eq(job_told(j, counted[c]), count[c]);
-  dat now = job_table(j, "CONTACT", -1);
+  DAT now = job_table(j, "CONTACT", -1);
   compare_tables(&was, &now, carried);
-  dat_free(&was);
-  dat_free(&now);
   strcpy(j->name, name);
   compare(j, first, "back_condensed_00001.h5", "/solution/u");
   compare(j, first, "back_condensed_00001.h5", "/solution/r");
@@ -111,21 +106,19 @@ static void round_trip(job *j, const char *solver, int carried) {
 /* Unit square on a floor, pressed and pushed; held at its top or by contact
  * alone, then no compliance exists. */
 static job run_square(const char *support, const char *law) {
-  job j = job_begin("square");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "square.inp",
-            "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -0.0005\n0.001, 1.\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n%s"
-            "*DSLOAD\nTOP, P, 10.\nLEFT, P, 4.\n"
-            "*SOLVER, TOL=1e-13\n"
-            "*OUTPUT, HDF5=NO, CONDENSED=FCLIB\n*PRINT, CONTACT\n*END STEP\n",
-            law, support);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j = job_with(
+      "square", "tests/regression/mesh/square.geo",
+      "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -0.0005\n0.001, 1.\n"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n%s"
+      "*DSLOAD\nTOP, P, 10.\nLEFT, P, 4.\n"
+      "*SOLVER, TOL=1e-13\n"
+      "*OUTPUT, HDF5=NO, CONDENSED=FCLIB\n*PRINT, CONTACT\n*END STEP\n",
+      law, support);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
@@ -157,16 +150,15 @@ static void check_nodes(const job *j, const char *file) {
   int n, m;
   double *no = take(j, file, "/node_no", &n),
          *r = take(j, file, "/solution/r", &m);
-  dat t = job_table(j, "CONTACT", -1);
+  DAT t = job_table(j, "CONTACT", -1);
   ck_assert(n == t.n_row && m == 2 * n);
   for (int i = 0; i < n; ++i)
     ck_assert_double_eq_tol(
         dat_at(&t, dat_row_near(&t, "node_no", no[i]), "f_n"), r[2 * i], 1e-12);
-  dat_free(&t);
   free(no), free(r);
 }
 
-START_TEST(problem_written_and_read_has_the_same_solution) {
+TEST(problem_written_and_read_has_the_same_solution) {
   job j = run_square("LEFT, 1, 1, 0.001\nTOP, 2, 2, -0.004\n", COULOMB);
   check_file(&j, "square_condensed_00002.h5", 2);
   check_nodes(&j, "square_condensed_00002.h5");
@@ -181,46 +173,38 @@ START_TEST(problem_written_and_read_has_the_same_solution) {
   round_trip(&j, ", METHOD=SOR", 0);
   job_end(&j);
 }
-END_TEST
 
-START_TEST(problem_of_three_dimensions_comes_back) {
-  job j = job_begin("block");
-  job_copy(&j, "input/block_shear_3d/block_shear_3d.geo");
-  job_write(&j, "block.inp",
-            "*MESH, FILE=block_shear_3d.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" COULOMB
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
-            "TOP, 1, 1, 0.012\nTOP, 2, 2, 0.004\nTOP, 3, 3, -0.02\n"
-            "*SOLVER, TOL=1e-13\n"
-            "*OUTPUT, HDF5=NO, CONDENSED=FCLIB\n*PRINT, CONTACT\n*END STEP\n");
+TEST(problem_of_three_dimensions_comes_back) {
+  JOB j = job_with(
+      "block", "input/block_shear_3d/block_shear_3d.geo",
+      "*MESH, FILE=block_shear_3d.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n" COULOMB
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
+      "TOP, 1, 1, 0.012\nTOP, 2, 2, 0.004\nTOP, 3, 3, -0.02\n"
+      "*SOLVER, TOL=1e-13\n"
+      "*OUTPUT, HDF5=NO, CONDENSED=FCLIB\n*PRINT, CONTACT\n*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   check_file(&j, "block_condensed_00002.h5", 3);
   round_trip(&j, "", 0);
-  job_end(&j);
 }
-END_TEST
 
 /* The layout has no place for a given sliding limit. */
-START_TEST(what_cannot_be_written_is_refused) {
-  job j = job_begin("square");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "square.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=TRESCA\n1.\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2, -0.001\n"
-            "*OUTPUT, CONDENSED=FCLIB\n*END STEP\n");
+TEST(what_cannot_be_written_is_refused) {
+  JOB j = job_with("square", "tests/regression/mesh/square.geo",
+                   "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+                   "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                   "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+                   "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+                   "*FRICTION, CONTACT=C, LAW=TRESCA\n1.\n"
+                   "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2, -0.001\n"
+                   "*OUTPUT, CONDENSED=FCLIB\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "CONDENSED=FCLIB"));
-  job_end(&j);
 }
-END_TEST
 
 /* ---- a rigid block ---- */
 
@@ -283,8 +267,8 @@ static void check_rigid(job *j, const rigid *b, double push, double mu,
                         double height) {
   int m;
   double sum[MASS];
-  double *r = take(j, "read_condensed_00001.h5", "/solution/r", &m);
-  double *u = take(j, "read_condensed_00001.h5", "/solution/u", &m);
+  FREED double *r = take(j, "read_condensed_00001.h5", "/solution/r", &m);
+  FREED double *u = take(j, "read_condensed_00001.h5", "/solution/u", &m);
   ck_assert_double_le(fclib_violation(3, FEET, b->W, b->q, b->mu, u, r), 1e-7);
   resultant(b, r, sum);
   double held = fmin(push, mu * WEIGHT);
@@ -293,17 +277,15 @@ static void check_rigid(job *j, const rigid *b, double push, double mu,
   ck_assert_double_eq_tol(sum[4], -push * (height - 0.5), 1e-6);
   for (int i = 0; i < FEET; ++i)
     ck_assert_double_eq_tol(u[3 * i + 1], (push - held) / 2.0, 1e-6);
-  free(r);
-  free(u);
 }
 
-START_TEST(rigid_block_obeys_statics) {
+TEST(rigid_block_obeys_statics) {
   static const double push[] = {2.0, 4.5, 0.0}, mu[] = {0.4, 0.3, 0.4};
   const double height = 0.2;
-  rigid *b = malloc(sizeof *b);
+  FREED rigid *b = malloc(sizeof *b);
   for (int k = 0; k < 3; ++k)
     for (int global = 0; global <= 1; ++global) {
-      job j = job_begin("read");
+      JOB j = job_begin("read");
       rigid_make(b, push[k], height, mu[k]);
       const fclib_global_data g = {3,    FEET, MASS, b->M,
                                    b->H, b->f, b->w, b->mu};
@@ -316,15 +298,12 @@ START_TEST(rigid_block_obeys_statics) {
       ck_assert_msg(code == 0, "push %g, mu %g: exit %d: %s", push[k], mu[k],
                     code, j.errors);
       check_rigid(&j, b, push[k], mu[k], height);
-      job_end(&j);
     }
-  free(b);
 }
-END_TEST
 
 /* Two masses 2 that move by v = (f + r) / 2, u = v + w: the first is pressed
  * with 10 - 2 and slides against mu 8 = 0.4, the second stays off. */
-START_TEST(slip_and_gap_are_those_of_the_moved_obstacle) {
+TEST(slip_and_gap_are_those_of_the_moved_obstacle) {
   double M[36] = {0}, H[36] = {0};
   const double f[6] = {-10, 0, 0, 1, 0.4, 0}, w[6] = {1, 0.3, 0.4, 1, 0, -0.5};
   const double mu[2] = {0.05, 0.05}, u[6] = {0, 0.18, 0.24, 1.5, 0.2, -0.5};
@@ -333,14 +312,13 @@ START_TEST(slip_and_gap_are_those_of_the_moved_obstacle) {
     H[7 * i] = 1.0;
   }
   const fclib_global_data g = {3, 2, 6, M, H, f, w, mu};
-  job j = job_begin("read");
+  JOB j = job_begin("read");
   fclib_global(in_folder(&j, "problem.h5"), STORE_TRIPLET, &g);
   job_write(&j, "read.inp",
             "*CONDENSED PROBLEM, FILE=problem.h5\n*STEP\n*SOLVER, TOL=1e-12\n"
             "*PRINT, CONTACT\n*END STEP\n");
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat c = job_table(&j, "CONTACT", -1);
+  CK_EXIT(job_run(&j, ""), 0, j);
+  DAT c = job_table(&j, "CONTACT", -1);
   ck_assert_int_eq(c.n_row, 2);
   for (int i = 0; i < 2; ++i) {
     ck_assert_double_eq_tol(dat_at(&c, i, "gap"), u[3 * i], 1e-9);
@@ -350,16 +328,13 @@ START_TEST(slip_and_gap_are_those_of_the_moved_obstacle) {
   ck_assert_double_eq_tol(dat_at(&c, 0, "f_n"), 8, 1e-9);
   ck_assert_double_eq_tol(dat_at(&c, 0, "f_t1"), -0.24, 1e-9);
   ck_assert_double_eq_tol(dat_at(&c, 0, "f_t2"), -0.32, 1e-9);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 enum { STOREYS = 20, JOINTS = 4 * STOREYS, FREE = 6 * STOREYS };
 
 /* A tower of unit cubes, four contacts between two of them, pushed at the top:
  * W of rank 120 of 240. It sticks: the floor carries the whole weight. */
-START_TEST(tower_of_blocks_stands) {
+TEST(tower_of_blocks_stands) {
   static const double inertia[6] = {1.0, 1.0, 1.0, 0.17, 0.17, 0.17};
   const double weight = 0.01, push = 0.0005;
   int m = 3 * JOINTS, n;
@@ -390,7 +365,7 @@ START_TEST(tower_of_blocks_stands) {
         W[i + m * c] += h * H[k + FREE * c];
     }
   const fclib_global_data g = {3, JOINTS, FREE, M, H, f, w, mu};
-  job j = job_begin("read");
+  JOB j = job_begin("read");
   fclib_global(in_folder(&j, "problem.h5"), STORE_COLUMNS, &g);
   ck_assert_msg(solve_file(&j, "") == 0, "%s", j.errors);
   double *r = take(&j, "read_condensed_00001.h5", "/solution/r", &n);
@@ -401,16 +376,14 @@ START_TEST(tower_of_blocks_stands) {
   ck_assert_double_eq_tol(sum, STOREYS * weight, 1e-7);
   ck_assert_double_eq_tol(side, -push, 1e-7);
   free(r), free(u), free(M), free(H), free(W);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- random problems, every solver ---- */
 
 /* W = b b' + d I with an unsymmetric part of the size "skew". */
 static void random_local(int m, double d, double skew, double *W, double *q,
                          unsigned long long *seed) {
-  double *b = malloc(sizeof *b * (size_t)(m * m));
+  FREED double *b = malloc(sizeof *b * (size_t)(m * m));
   for (int k = 0; k < m * m; ++k) b[k] = 2.0 * case_random(seed) - 1.0;
   for (int i = 0; i < m; ++i) {
     q[i] = 2.0 * case_random(seed) - 1.3;
@@ -420,7 +393,6 @@ static void random_local(int m, double d, double skew, double *W, double *q,
       W[i + m * j] = sum;
     }
   }
-  free(b);
 }
 
 /* One problem by one solver: solved, or honestly not. Returns 1 if solved. */
@@ -432,26 +404,24 @@ static int solve_random(int dim, int n, const char *solver, double skew,
          *mu = malloc(sizeof *mu * (size_t)n);
   random_local(m, 0.3, skew, W, q, &seed);
   for (int i = 0; i < n; ++i) mu[i] = 0.8 * case_random(&seed);
-  job j = job_begin("read");
+  JOB j = job_begin("read");
   fclib_local(in_folder(&j, "problem.h5"), STORE_ROWS, dim, n, W, q, mu);
   int code = solve_file(&j, solver);
   ck_assert_msg(code == 0 || code == 1 || code == 6, "%s: exit %d: %s", solver,
                 code, j.errors);
   if (code == 0) {
-    double *r = take(&j, "read_condensed_00001.h5", "/solution/r", &k);
+    FREED double *r = take(&j, "read_condensed_00001.h5", "/solution/r", &k);
     double *u = take(&j, "read_condensed_00001.h5", "/solution/u", &k);
     double miss = fclib_violation(dim, n, W, q, mu, u, r);
     ck_assert_msg(miss <= 1e-7, "%s claims a violation of %g", solver, miss);
     solved = 1;
-    free(r);
     free(u);
   }
-  job_end(&j);
   free(W), free(q), free(mu);
   return solved;
 }
 
-START_TEST(every_solver_is_honest_on_problems_from_files) {
+TEST(every_solver_is_honest_on_problems_from_files) {
   char method[80];
   for (int k = 0; solver_list[k] != NULL; ++k) {
     int solved = 0;
@@ -461,15 +431,13 @@ START_TEST(every_solver_is_honest_on_problems_from_files) {
     ck_assert_msg(solved > 0, "%s solves neither", solver_list[k]->name);
   }
 }
-END_TEST
 
-START_TEST(auto_solves_unsymmetric_problems) {
+TEST(auto_solves_unsymmetric_problems) {
   for (int dim = 2; dim <= 3; ++dim)
     for (unsigned long long seed = 1; seed <= 4; ++seed)
       ck_assert_msg(solve_random(dim, 20, "", 1e-3, seed), "%d-D, seed %llu",
                     dim, seed);
 }
-END_TEST
 
 /* ---- linear complementarity problems ---- */
 
@@ -485,7 +453,7 @@ static lcp lcp_new_case(int n) {
 
 static int run_lcp(job *j, const lcp *p, const char *solver) {
   size_t size = 64 + 30 * (size_t)(p->n * (p->n + 1)), used = 0;
-  char *text = malloc(size);
+  FREED char *text = malloc(size);
   used += (size_t)sprintf(text, "%d\n", p->n);
   for (int k = 0; k < p->n * p->n; ++k)
     used += (size_t)sprintf(text + used, "%.17g%c", p->M[k],
@@ -493,7 +461,6 @@ static int run_lcp(job *j, const lcp *p, const char *solver) {
   for (int k = 0; k < p->n; ++k)
     used += (size_t)sprintf(text + used, "%.17g\n", p->q[k]);
   job_write(j, "lcp.txt", "%s", text);
-  free(text);
   job_write(j, "lcp.inp",
             "*CONDENSED PROBLEM, FILE=lcp.txt, TYPE=LCP\n*STEP\n"
             "*SOLVER, TOL=1e-8%s\n*END STEP\n",
@@ -505,7 +472,7 @@ static int run_lcp(job *j, const lcp *p, const char *solver) {
 static double lcp_violation(const job *j, const lcp *p) {
   double worst = 0.0, scale = largest(p->n, p->q);
   int open = 0;
-  dat t = job_table(j, "CONTACT", 0);
+  DAT t = job_table(j, "CONTACT", 0);
   ck_assert_int_eq(t.n_row, p->n);
   for (int i = 0; i < p->n; ++i) {
     double w = p->q[i], z = dat_at(&t, i, "z");
@@ -515,25 +482,23 @@ static double lcp_violation(const job *j, const lcp *p) {
     open += z == 0.0;
   }
   ck_assert(job_told(j, "open") == open);
-  dat_free(&t);
   return worst / scale;
 }
 
 static void check_lcp(lcp *p, const char *what) {
-  job j = job_begin("lcp");
+  JOB j = job_begin("lcp");
   int code = run_lcp(&j, p, "");
   ck_assert_msg(code == 0, "%s: exit %d: %s", what, code, j.errors);
   double miss = lcp_violation(&j, p);
   ck_assert_msg(miss <= 1e-8, "%s: violation %g", what, miss);
-  job_end(&j);
   free(p->M);
   free(p->q);
 }
 
 /* Ties at every pivot; first-index rules cycle. The solution is 1/3 each. */
-START_TEST(tie_case_of_murty_is_solved) {
+TEST(tie_case_of_murty_is_solved) {
   lcp p = lcp_new_case(3);
-  job j = job_begin("lcp");
+  JOB j = job_begin("lcp");
   for (int i = 0; i < 3; ++i) {
     p.M[3 * i + i] = 1.0;
     p.M[3 * i + (i + 1) % 3] = 2.0;
@@ -541,19 +506,16 @@ START_TEST(tie_case_of_murty_is_solved) {
   }
   for (int k = 0; k < 2; ++k) {
     ck_assert_int_eq(run_lcp(&j, &p, k ? ", METHOD=LEMKE" : ""), 0);
-    dat t = job_table(&j, "CONTACT", 0);
+    DAT t = job_table(&j, "CONTACT", 0);
     for (int i = 0; i < 3; ++i)
       ck_assert_double_eq_tol(dat_at(&t, i, "z"), 1.0 / 3.0, 1e-14);
-    dat_free(&t);
   }
-  job_end(&j);
   free(p.M);
   free(p.q);
 }
-END_TEST
 
 /* Lower triangle of twos: the plain method takes 2^n pivots. */
-START_TEST(exponential_case_is_solved) {
+TEST(exponential_case_is_solved) {
   static const int sizes[] = {4, 12, 60, 200};
   for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k) {
     lcp p = lcp_new_case(sizes[k]);
@@ -564,17 +526,16 @@ START_TEST(exponential_case_is_solved) {
     check_lcp(&p, "exponential");
   }
 }
-END_TEST
 
 /* M = b b' of half the rank (and a skew part): semidefinite, with a solution by
  * construction. Rows and columns scaled over twelve decades. */
-START_TEST(semidefinite_case_is_solved) {
+TEST(semidefinite_case_is_solved) {
   for (unsigned long long seed = 1; seed <= 12; ++seed) {
     unsigned long long s = seed;
     int n = seed % 3 == 0 ? 100 : 20, half = n / 2;
     lcp p = lcp_new_case(n);
-    double *b = malloc(sizeof *b * (size_t)(n * half)),
-           *d = malloc(sizeof *d * (size_t)n);
+    FREED double *b = malloc(sizeof *b * (size_t)(n * half)),
+                 *d = malloc(sizeof *d * (size_t)n);
     for (int k = 0; k < n * half; ++k) b[k] = 2.0 * case_random(&s) - 1.0;
     for (int i = 0; i < n; ++i)
       d[i] = seed % 4 == 0 ? pow(10.0, 4.0 * case_random(&s) - 2.0) : 1.0;
@@ -592,49 +553,42 @@ START_TEST(semidefinite_case_is_solved) {
       for (int r = 0; r < n; ++r) p.q[r] -= p.M[n * r + i] * z;
     }
     check_lcp(&p, "semidefinite");
-    free(b);
-    free(d);
   }
 }
-END_TEST
 
 /* w_1 = -1 - z_2, w_2 = z_1 + 1: no z >= 0 makes w_1 >= 0. */
-START_TEST(case_without_solution_ends_with_six) {
+TEST(case_without_solution_ends_with_six) {
   lcp p = lcp_new_case(2);
   p.M[1] = -1.0;
   p.M[2] = 1.0;
   p.q[0] = -1.0;
   p.q[1] = 1.0;
-  job j = job_begin("lcp");
+  JOB j = job_begin("lcp");
   ck_assert_int_eq(run_lcp(&j, &p, ""), 6);
   ck_assert_ptr_nonnull(strstr(j.errors, "no solution"));
   ck_assert_int_eq(run_lcp(&j, &p, ", METHOD=SOR"), 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "METHOD=sor"));
-  job_end(&j);
   free(p.M);
   free(p.q);
 }
-END_TEST
 
 /* ---- verdicts and the deck ---- */
 
 /* A pull that contact cannot hold: u = q + W r with W = 0 and q_N < 0. */
-START_TEST(contact_without_solution_ends_with_six) {
+TEST(contact_without_solution_ends_with_six) {
   const double W[4] = {0.0, 0.0, 0.0, 1.0}, q[2] = {-1.0, 0.0}, mu[1] = {0.2};
-  job j = job_begin("read");
+  JOB j = job_begin("read");
   fclib_local(in_folder(&j, "problem.h5"), STORE_ROWS, 2, 1, W, q, mu);
-  int code = solve_file(&j, "");
+  const int code = solve_file(&j, "");
   ck_assert_msg(code == 6 || code == 1, "exit %d: %s", code, j.errors);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(effect_plan_has_no_mesh) {
+TEST(effect_plan_has_no_mesh) {
   const double W[4] = {2.0, 0.0, 0.0, 1.0}, q[2] = {-1.0, 0.5}, mu[1] = {0.0};
-  job j = job_begin("read");
+  JOB j = job_begin("read");
   fclib_local(in_folder(&j, "problem.h5"), STORE_COLUMNS, 2, 1, W, q, mu);
   ck_assert_msg(solve_file(&j, "") == 0, "%s", j.errors);
-  char *lst = job_file(&j, "lst");
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "finite elements            off"));
   ck_assert_ptr_nonnull(strstr(lst, "friction                   off"));
   static const char *const stages[] = {"mesh  ", "stiffness assembly",
@@ -649,23 +603,19 @@ START_TEST(effect_plan_has_no_mesh) {
     ck_assert_int_eq(calls, 0);
     ck_assert_int_eq(bytes, 0);
   }
-  free(lst);
-  dat t = job_table(&j, "CONTACT", 0); /* without being asked                 */
+  DAT t = job_table(&j, "CONTACT", 0); /* without being asked                 */
   ck_assert_double_eq_tol(dat_at(&t, 0, "f_n"), 0.5, 1e-12);
   ck_assert_double_eq_tol(dat_at(&t, 0, "u_t"), 0.5, 1e-12);
-  dat_free(&t);
   ck_assert_int_eq(job_run(&j, "--check"), 0);
-  job_end(&j);
 }
-END_TEST
 
 /* It factors the matrix: only where *ACCURACY asks for it. */
-START_TEST(error_is_bound_on_request) {
+TEST(error_is_bound_on_request) {
   static const char *const cards[] = {
       "", "*ACCURACY\n", "*ACCURACY, SOLVER=NO\n", "*ACCURACY, MESH=YES\n"};
   const double W[4] = {2.0, 0.0, 0.0, 1.0}, q[2] = {-1.0, 0.5}, mu[1] = {0.1};
   for (int k = 0; k < 4; ++k) {
-    job j = job_begin("read");
+    JOB j = job_begin("read");
     fclib_local(in_folder(&j, "problem.h5"), STORE_COLUMNS, 2, 1, W, q, mu);
     job_write(&j, "read.inp",
               "*CONDENSED PROBLEM, FILE=problem.h5\n*STEP\n%s*END STEP\n",
@@ -673,20 +623,17 @@ START_TEST(error_is_bound_on_request) {
     ck_assert_int_eq(job_run(&j, ""), k == 3 ? 2 : 0);
     if (k == 3) ck_assert_ptr_nonnull(strstr(j.errors, "P2034"));
     if (k < 3) {
-      char *lst = job_file(&j, "lst");
+      FREED char *lst = job_file(&j, "lst");
       const char *at = strstr(lst, "error of solver");
       ck_assert_ptr_nonnull(at);
       ck_assert_int_eq(strncmp(at + 27, "on", 2) == 0, k == 1);
-      free(lst);
     }
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A loose tolerance on nodes that are bound to each other: the bound of the
  * error is beyond a tenth of the energy norm. */
-START_TEST(error_in_doubt_is_no_solution) {
+TEST(error_in_doubt_is_no_solution) {
   enum { N = 12, M = 2 * N };
   double W[M * M], q[M], mu[N];
   for (int i = 0; i < M; ++i) {
@@ -696,31 +643,26 @@ START_TEST(error_in_doubt_is_no_solution) {
   }
   for (int i = 0; i < N; ++i) mu[i] = 0.2;
   for (int k = 0; k < 2; ++k) {
-    job j = job_begin("read");
+    JOB j = job_begin("read");
     fclib_local(in_folder(&j, "problem.h5"), STORE_COLUMNS, 2, N, W, q, mu);
     job_write(&j, "read.inp",
               "*CONDENSED PROBLEM, FILE=problem.h5\n*STEP\n"
               "*SOLVER, METHOD=%s\n*ACCURACY\n*END STEP\n",
               k == 0 ? "AUTO" : "SOR, TOL=0.05");
     const int code = job_run(&j, "");
-    char *sta = job_file(&j, "sta");
+    FREED char *sta = job_file(&j, "sta");
     ck_assert_msg(code == k, "exit %d: %s%s", code, j.errors, sta);
     ck_assert_int_eq(strstr(sta, "UNSETTLED BOUND") != NULL, k == 1);
-    free(sta);
-    job_end(&j);
   }
 }
-END_TEST
 
-START_TEST(no_contact_is_solved) {
-  job j = job_begin("read");
+TEST(no_contact_is_solved) {
+  JOB j = job_begin("read");
   fclib_local(in_folder(&j, "problem.h5"), STORE_ROWS, 3, 0, NULL, NULL, NULL);
   ck_assert_msg(solve_file(&j, "") == 0, "%s", j.errors);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(deck_errors_have_a_line) {
+TEST(deck_errors_have_a_line) {
   static const struct {
     const char *text, *message;
     int code;
@@ -740,26 +682,23 @@ START_TEST(deck_errors_have_a_line) {
       {"*CONDENSED PROBLEM, FILE=a\n*STEP\n*END STEP\n*STEP\n*END STEP\n",
        "P2034", 2}};
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
-    job j = job_begin("read");
-    job_write(&j, "read.inp", "%s", wrong[k].text);
+    JOB j = job_with("read", NULL, "%s", wrong[k].text);
     int code = job_run(&j, "");
     ck_assert_msg(code == wrong[k].code, "%s: exit %d: %s", wrong[k].text, code,
                   j.errors);
     ck_assert_msg(strstr(j.errors, wrong[k].message) != NULL, "%s", j.errors);
     ck_assert_ptr_nonnull(strstr(j.errors, "read.inp:"));
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Names that the run gives to its results. */
-START_TEST(file_of_the_problem_is_not_overwritten) {
+TEST(file_of_the_problem_is_not_overwritten) {
   static const char *const names[] = {"read.dat", "read.h5", "read.json",
                                       "read_condensed_00001.h5"};
   const double W[4] = {2.0, 0.0, 0.0, 1.0}, q[2] = {-1.0, 0.5}, mu[1] = {0.0};
   for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
     int n;
-    job j = job_begin("read");
+    JOB j = job_begin("read");
     fclib_local(in_folder(&j, names[k]), STORE_ROWS, 2, 1, W, q, mu);
     job_write(&j, "read.inp",
               "*CONDENSED PROBLEM, FILE=%s\n*STEP\n"
@@ -767,23 +706,10 @@ START_TEST(file_of_the_problem_is_not_overwritten) {
               names[k]);
     ck_assert_int_eq(job_run(&j, ""), 2);
     ck_assert_ptr_nonnull(strstr(j.errors, names[k]));
-    double *x = fclib_take(in_folder(&j, names[k]), "/fclib_local/W/x", &n);
+    FREED double *x =
+        fclib_take(in_folder(&j, names[k]), "/fclib_local/W/x", &n);
     ck_assert_ptr_nonnull(x);
-    free(x);
-    job_end(&j);
   }
 }
-END_TEST
 
-UNIT_MAIN("exchange", problem_written_and_read_has_the_same_solution,
-          problem_of_three_dimensions_comes_back,
-          what_cannot_be_written_is_refused, rigid_block_obeys_statics,
-          slip_and_gap_are_those_of_the_moved_obstacle, tower_of_blocks_stands,
-          every_solver_is_honest_on_problems_from_files,
-          auto_solves_unsymmetric_problems, tie_case_of_murty_is_solved,
-          exponential_case_is_solved, semidefinite_case_is_solved,
-          case_without_solution_ends_with_six,
-          contact_without_solution_ends_with_six, effect_plan_has_no_mesh,
-          error_is_bound_on_request, error_in_doubt_is_no_solution,
-          no_contact_is_solved, deck_errors_have_a_line,
-          file_of_the_problem_is_not_overwritten)
+UNIT_MAIN("exchange")

@@ -3,7 +3,6 @@
  * surface of a block gives the answer of its foot. Two blocks that are mirror
  * images, with a crack between them: each is one on a plane.
  */
-#include "base/base.h"
 #include "support/grid.h"
 #include "support/inner_group.h"
 #include "support/job.h"
@@ -35,17 +34,15 @@ static int is_at_zero(const mesh *m, const int *node) {
 
 static void write_block(const job *j, int dim, double slant) {
   const double length[3] = {2, 1, 1};
-  mesh *m = dim == 2 ? make_grid_2d((int[2]){8, 4}, length)
-                     : make_grid_3d((int[3]){5, 3, 3}, length);
-  char path[128];
+  OWNED mesh *m = dim == 2 ? make_grid_2d((int[2]){8, 4}, length)
+                           : make_grid_3d((int[3]){5, 3, 3}, length);
   ck_assert_ptr_nonnull(m);
   for (int i = 0; i < m->n_node; ++i)
     m->x[dim * i] += slant * (m->x[dim * i] - 1) * m->x[dim * i + 1];
   add_side_group(m, "ALL", is_outer);
   add_side_group(m, "FOOT", is_below);
-  snprintf(path, sizeof path, "%s/block.msh", j->dir);
+  PRINTED(path, "%s/block.msh", j->dir);
   msh_write(path, m);
-  memory_free(m);
 }
 
 /* slant < 0: of revolution, and upright. */
@@ -71,24 +68,20 @@ static job run_block(int dim, double slant, const char *group,
 
 static void compare(const job *a, const job *b, const char *table, int row,
                     const char *column) {
-  dat p = job_table(a, table, -1), q = job_table(b, table, -1);
+  DAT p = job_table(a, table, -1), q = job_table(b, table, -1);
   const double x = dat_at(&p, row, column), y = dat_at(&q, row, column);
   ck_assert_msg(fabs(x - y) <= 1e-9 * fabs(x), "%s: %.12g, foot %.12g", column,
                 y, x);
-  dat_free(&p);
-  dat_free(&q);
 }
 
 static void compare_groups(int dim, double slant, const char *shape,
                            const char *law) {
   static const char *const column[] = {"normal", "closed_area", "pressure_max"};
-  job a = run_block(dim, slant, "FOOT", shape, law);
-  job b = run_block(dim, slant, "ALL", shape, law);
+  JOB a = run_block(dim, slant, "FOOT", shape, law);
+  JOB b = run_block(dim, slant, "ALL", shape, law);
   for (int k = 0; k < 3; ++k) compare(&a, &b, "TOTALS", 0, column[k]);
   compare(&a, &b, "GOALS", 0, "error");
   compare(&a, &b, "ENERGY", 0, "strain_energy");
-  job_end(&a);
-  job_end(&b);
 }
 
 static const char plane[2][80] = {
@@ -103,14 +96,13 @@ static const char round_one[4][120] = {
 
 /* Upright and, of a trapezoid, by 10 degrees off. */
 /* The whole surface has the axis, where there is no face. */
-START_TEST(sides_of_a_body_of_revolution_neither) {
+TEST(sides_of_a_body_of_revolution_neither) {
   compare_groups(2, -1, plane[0], "COULOMB\n0.3\n");
   compare_groups(2, -1, "TYPE=SPHERE, RADIUS=1000\n0., -1000.\nMOVE, 0., 0.01",
                  "COULOMB\n0.3\n");
 }
-END_TEST
 
-START_TEST(sides_of_a_block_have_no_part_in_its_foot) {
+TEST(sides_of_a_block_have_no_part_in_its_foot) {
   for (int dim = 2; dim <= 3; ++dim) {
     compare_groups(dim, 0.18, plane[dim - 2], "COULOMB\n0.3\n");
     compare_groups(dim, 0, plane[dim - 2], "TRESCA\n1.\n");
@@ -118,19 +110,17 @@ START_TEST(sides_of_a_block_have_no_part_in_its_foot) {
   for (int c = 0; c < 4; ++c)
     compare_groups(2 + c % 2, 0.18 * (c / 2), round_one[c], "COULOMB\n0.3\n");
 }
-END_TEST
 
 /* Cells above y = 0, and their mirror images below: diagonals alternate. */
 static void write_mirrored(const job *j, int with_image) {
   const int below = with_image ? 4 : 0;
-  mesh *m = make_grid_2d((int[2]){8, 4 + below}, (double[2]){2, 1 + below / 4});
-  char path[128];
+  OWNED mesh *m =
+      make_grid_2d((int[2]){8, 4 + below}, (double[2]){2, 1 + below / 4});
   ck_assert_ptr_nonnull(m);
   for (int i = 0; i < m->n_node; ++i) m->x[2 * i + 1] -= 0.25 * below;
   add_side_group(m, "LINE", is_at_zero);
-  snprintf(path, sizeof path, "%s/block.msh", j->dir);
+  PRINTED(path, "%s/block.msh", j->dir);
   msh_write(path, m);
-  memory_free(m);
 }
 
 static job run_mirrored(int with_image) {
@@ -149,22 +139,16 @@ static job run_mirrored(int with_image) {
                        : "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
                          "*CONTACT, NAME=C, GROUP=LINE, OBSTACLE=O\n",
             with_image ? "BOTTOM, 1\nBOTTOM, 2, 2, \"0.01*x\"\n" : "");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
-START_TEST(crack_between_mirror_images_is_a_plane) {
-  job a = run_mirrored(0), b = run_mirrored(1);
+TEST(crack_between_mirror_images_is_a_plane) {
+  JOB a = run_mirrored(0), b = run_mirrored(1);
   for (int goal = 0; goal < 2; ++goal) {
     compare(&a, &b, "GOALS", goal, "value");
     compare(&a, &b, "GOALS", goal, "error");
   }
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
-UNIT_MAIN("facing", crack_between_mirror_images_is_a_plane,
-          sides_of_a_body_of_revolution_neither,
-          sides_of_a_block_have_no_part_in_its_foot)
+UNIT_MAIN("facing")

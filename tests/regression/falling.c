@@ -4,7 +4,6 @@
  * forces are those of the load to what rounding of the motion leaves, and
  * increments do not follow that rounding.
  */
-#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -29,15 +28,13 @@ typedef struct fall {
 } fall;
 
 static int run_fall(job *j, const fall *f) {
-  char path[100];
-  int *number = NULL;
+  FREED int *number = NULL;
   *j = job_begin("fall");
-  snprintf(path, sizeof path, "%s/fall.msh", j->dir);
+  PRINTED(path, "%s/fall.msh", j->dir);
   FILE *out = fopen(path, "w");
   ck_assert_ptr_nonnull(out);
   ck_assert_int_eq(scene_mesh_write(out, "rect 6 4 1 1", f->mesh, &number), 1);
   fclose(out);
-  free(number);
   job_write(j, "fall.inp",
             "*MESH, FILE=fall.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n%s"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -52,18 +49,15 @@ static int run_fall(job *j, const fall *f) {
 
 /* All increments settled, few of them, the load carried in the end. */
 static void ck_carried(const fall *f, int most, double tol) {
-  job j;
+  JOB j;
   const int code = run_fall(&j, f);
   ck_assert_msg(code == 0, "gap %g, load %g, %s: exit %d: %s", f->gap, f->load,
                 f->method, code, j.errors);
-  dat t = job_table(&j, "TOTALS", -1);
-  const double normal = dat_at(&t, 0, "normal");
+  const double normal = job_value(&j, "TOTALS", -1, "normal");
   ck_assert_msg(fabs(normal - f->load) <= tol * f->load,
                 "gap %g, load %g, %s: %.17g", f->gap, f->load, f->method,
                 normal);
   ck_assert_int_le((int)job_told(&j, "increment"), most);
-  dat_free(&t);
-  job_end(&j);
 }
 
 static const char in_ten[] = "*QUASISTATIC\n0.1, 1.";
@@ -71,7 +65,7 @@ static const char held[] = "*BOUNDARY\nLEFT, 1\n";
 
 #define SWEEPS_FALL "SOR", "AITKEN", "AITKEN, ACCELERATION=ANDERSON"
 
-START_TEST(next_to_no_load_is_carried) {
+TESTS(next_to_no_load_is_carried, 9) {
   static const char *const methods[] = {
       "AUTO", "LEMKE", "PCG", "AUGLAG", "PROXIMAL", "LAGRANGE", SWEEPS_FALL};
   static const double loads[] = {1e-2, 1e-5, 1e-7};
@@ -80,9 +74,8 @@ START_TEST(next_to_no_load_is_carried) {
     ck_carried(&f, 10, 1e-6);
   }
 }
-END_TEST
 
-START_TEST(chosen_increments_do_not_follow_the_fall) {
+TESTS(chosen_increments_do_not_follow_the_fall, 36) {
   static const struct {
     const char *law, *step;
   } made[] = {{MAXWELL, "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1.E-3\n1., 1."},
@@ -99,10 +92,9 @@ START_TEST(chosen_increments_do_not_follow_the_fall) {
                   methods[_i / 9]};
   ck_carried(&f, 80, 1e-6);
 }
-END_TEST
 
 /* No digit of the first increments, four of the last. */
-START_TEST(rounding_counts_against_the_loads_of_the_step) {
+TEST(rounding_counts_against_the_loads_of_the_step) {
   const fall f = {&wavy,
                   1.0,
                   3e-8,
@@ -112,18 +104,15 @@ START_TEST(rounding_counts_against_the_loads_of_the_step) {
                   "AUTO"};
   ck_carried(&f, 80, 1e-2);
 }
-END_TEST
 
-START_TEST(no_load_at_all_ends_with_a_verdict) {
-  job j;
+TEST(no_load_at_all_ends_with_a_verdict) {
+  JOB j;
   const fall f = {&wavy, 1.0, 1e-16, "", in_ten, held, "AUTO"};
   ck_assert_int_eq(run_fall(&j, &f), 6);
   ck_assert_ptr_nonnull(strstr(j.errors, "rounding leaves no correct digit"));
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(a_start_inside_the_floor_by_rounding_is_none) {
+TESTS(a_start_inside_the_floor_by_rounding_is_none, 12) {
   static const char *const methods[] = {"AUTO",     "PCG",   "PROXIMAL",
                                         "LAGRANGE", "LEMKE", "SOR"};
   const fall f = {&sunk,
@@ -135,19 +124,16 @@ START_TEST(a_start_inside_the_floor_by_rounding_is_none) {
                   methods[_i / 2]};
   ck_carried(&f, 3, 1e-6);
 }
-END_TEST
 
 /* No contact: the strains of a body that its supports lead are rounding. */
-START_TEST(chosen_increments_do_not_follow_supports) {
-  job j = job_begin("led");
-  int *number = NULL;
-  char path[100];
-  snprintf(path, sizeof path, "%s/led.msh", j.dir);
+TEST(chosen_increments_do_not_follow_supports) {
+  JOB j = job_begin("led");
+  FREED int *number = NULL;
+  PRINTED(path, "%s/led.msh", j.dir);
   FILE *out = fopen(path, "w");
   ck_assert_ptr_nonnull(out);
   ck_assert_int_eq(scene_mesh_write(out, "rect 6 4 1 1", &wavy, &number), 1);
   fclose(out);
-  free(number);
   job_write(
       &j, "led.inp",
       "*MESH, FILE=led.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n" MAXWELL
@@ -156,24 +142,20 @@ START_TEST(chosen_increments_do_not_follow_supports) {
       "*BOUNDARY\nTOP, 1, 1, 0.3\nTOP, 2, 2, -0.7\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, "--no-timing --quiet"), 0);
   ck_assert_int_le((int)job_told(&j, "increment"), 2);
-  job_end(&j);
 }
-END_TEST
 
 /* The wall carries the traction on its nodes straight: no strain, no loss, nor
  * anything that could flow. */
-START_TEST(loads_carried_straight_lose_nothing) {
+TESTS(loads_carried_straight_lose_nothing, 2) {
   const mesh_change bent = {
       .map = {NULL, NULL, "z + 0.05*(x - 0.5)^2*(1 - z)"}};
-  int *number = NULL;
-  char path[100];
-  job j = job_begin("wall");
-  snprintf(path, sizeof path, "%s/wall.msh", j.dir);
+  FREED int *number = NULL;
+  JOB j = job_begin("wall");
+  PRINTED(path, "%s/wall.msh", j.dir);
   FILE *out = fopen(path, "w");
   ck_assert_ptr_nonnull(out);
   ck_assert_int_eq(scene_mesh_write(out, "box 2 2 2 1 1 1", &bent, &number), 1);
   fclose(out);
-  free(number);
   job_write(
       &j, "wall.inp",
       "*MESH, FILE=wall.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.07\n%s"
@@ -188,51 +170,42 @@ START_TEST(loads_carried_straight_lose_nothing) {
       "*DSLOAD\nRIGHT, TX, 0.14, NOW\n*PRINT, TOTALS\n*END STEP\n",
       _i == 0 ? "" : MAXWELL,
       _i == 0 ? "*STATIC\n" : "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n");
-  const int code = job_run(&j, "--no-timing --quiet");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  job_end(&j);
+  CK_EXIT(job_run(&j, "--no-timing --quiet"), 0, j);
 }
-END_TEST
 
 /* Open nodes carry the loads by friction while the supports move the body. */
-START_TEST(loads_carried_straight_by_a_body_led_lose_nothing) {
-  job j = job_begin("led");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "led.inp",
-            "*PARAMETER\nN = %d\n*MESH, FILE=square.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1., %g\n%s"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=TRESCA\n1.E6\n"
-            "*STEP\n%s\n0.5, 1.\n"
-            "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, -0.7\n%s"
-            "*CLOAD\nBOTTOM, 1, %s\n*SOLVER, METHOD=%s\n*PRINT, TOTALS\n"
-            "*END STEP\n",
-            _i < 6 ? 4 : 16, _i < 6 ? 0.3 : 0.499, _i / 2 != 1 ? "" : MAXWELL,
-            _i < 6 ? "" : ", TYPE=CAX3",
-            _i / 2 != 1 ? "*QUASISTATIC" : "*VISCO, INTEGRATOR=BACKWARD",
-            _i < 6 ? "" : "LEFT, 1\n", _i % 2 == 0 ? "0.1" : "1.E4",
-            _i / 2 != 2 ? "AUTO" : "LAGRANGE");
+TESTS(loads_carried_straight_by_a_body_led_lose_nothing, 8) {
+  JOB j = job_with("led", "tests/regression/mesh/square.geo",
+                   "*PARAMETER\nN = %d\n*MESH, FILE=square.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n1., %g\n%s"
+                   "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
+                   "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
+                   "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+                   "*FRICTION, CONTACT=C, LAW=TRESCA\n1.E6\n"
+                   "*STEP\n%s\n0.5, 1.\n"
+                   "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, -0.7\n%s"
+                   "*CLOAD\nBOTTOM, 1, %s\n*SOLVER, METHOD=%s\n*PRINT, TOTALS\n"
+                   "*END STEP\n",
+                   _i < 6 ? 4 : 16, _i < 6 ? 0.3 : 0.499,
+                   _i / 2 != 1 ? "" : MAXWELL, _i < 6 ? "" : ", TYPE=CAX3",
+                   _i / 2 != 1 ? "*QUASISTATIC" : "*VISCO, INTEGRATOR=BACKWARD",
+                   _i < 6 ? "" : "LEFT, 1\n", _i % 2 == 0 ? "0.1" : "1.E4",
+                   _i / 2 != 2 ? "AUTO" : "LAGRANGE");
   ck_assert_msg(job_run(&j, "--no-timing --quiet") == 0, "%s", j.errors);
-  job_end(&j);
 }
-END_TEST
 
 /* So they do on a floor that moves, where a node is far softer than others. */
-START_TEST(loads_carried_straight_on_a_floor_led_lose_nothing) {
+TESTS(loads_carried_straight_on_a_floor_led_lose_nothing, 4) {
   static const char *const methods[] = {"AUTO", "SOR", "LEMKE", "LAGRANGE"};
   const mesh_change bent = {.map = {"x + 0.05*x*(1 - x)*(1 - z)", NULL, NULL}};
-  int *number = NULL;
-  char path[100];
-  job j = job_begin("box");
-  snprintf(path, sizeof path, "%s/box.msh", j.dir);
+  FREED int *number = NULL;
+  JOB j = job_begin("box");
+  PRINTED(path, "%s/box.msh", j.dir);
   FILE *out = fopen(path, "w");
   ck_assert_ptr_nonnull(out);
   ck_assert_int_eq(scene_mesh_write(out, "box 3 1 1 1 0.5 1", &bent, &number),
                    1);
   fclose(out);
-  free(number);
   job_write(&j, "box.inp",
             "*MESH, FILE=box.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -245,31 +218,25 @@ START_TEST(loads_carried_straight_on_a_floor_led_lose_nothing) {
             "*PRINT, TOTALS\n*END STEP\n",
             methods[_i]);
   ck_assert_msg(job_run(&j, "--no-timing --quiet") == 0, "%s", j.errors);
-  job_end(&j);
 }
-END_TEST
 
 /* Nothing but supports strains the body: its errors are those of any other. */
-START_TEST(supports_alone_leave_an_error_of_the_mesh) {
-  job j = job_begin("pulled");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "pulled.inp",
-            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n"
-            "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
-            "BOTTOM, 1, 2\nTOP, 1, 1, 0.1\nTOP, 2, 2, 0.1\n*END STEP\n");
+TEST(supports_alone_leave_an_error_of_the_mesh) {
+  JOB j =
+      job_with("pulled", "tests/regression/mesh/square.geo",
+               "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+               "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n"
+               "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
+               "BOTTOM, 1, 2\nTOP, 1, 1, 0.1\nTOP, 2, 2, 0.1\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, "--no-timing --quiet"), 0);
   ck_assert_double_gt(job_told(&j, "mesh_error_percent"), 1);
-  job_end(&j);
 }
-END_TEST
 
 /* What a loose tolerance leaves between contact forces is nobody's once all
  * nodes are off. */
-START_TEST(a_body_lifted_off_keeps_no_forces) {
+TESTS(a_body_lifted_off_keeps_no_forces, 4) {
   static const char *const methods[] = {"SOR", "AITKEN", "AUGLAG", "PCG"};
-  char method[40];
-  snprintf(method, sizeof method, "%s, TOL=1.E-3", methods[_i]);
+  PRINTED(method, "%s, TOL=1.E-3", methods[_i]);
   const fall f = {&wavy,
                   0,
                   1,
@@ -277,62 +244,34 @@ START_TEST(a_body_lifted_off_keeps_no_forces) {
                   "*QUASISTATIC\n1., 2.",
                   "*BOUNDARY\nTOP, 1, 1, 0.01, A\nTOP, 2, 2, 0.01, A\n",
                   method};
-  job j;
+  JOB j;
   ck_assert_int_eq(run_fall(&j, &f), 0);
-  dat pressed = job_table(&j, "TOTALS", 0), t = job_table(&j, "TOTALS", -1);
+  DAT pressed = job_table(&j, "TOTALS", 0), t = job_table(&j, "TOTALS", -1);
   ck_assert_double_gt(dat_at(&pressed, 0, "normal"), 1);
   ck_assert_double_eq(dat_at(&t, 0, "normal"), 0);
   ck_assert_double_eq(dat_at(&t, 0, "tangential"), 0);
-  dat_free(&pressed);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* No wall stands where no normal meets the ball: a body led down by three of
  * its sizes has no forces, one that is pressed down has no equilibrium. */
-START_TEST(a_ball_that_no_normal_meets_holds_nothing) {
+TESTS(a_ball_that_no_normal_meets_holds_nothing, 2) {
   static const char *const by[] = {"TOP, 1, 1, 0.\nTOP, 2, 2, -3.\n",
                                    "LEFT, 1\n*DSLOAD\nTOP, P, 1.\n"};
-  job j = job_begin("ball");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "ball.inp",
-            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=0.001\n9., -5.\n"
-            "MOVE, 0., 5E-4\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n%s"
-            "*PRINT, TOTALS\n*END STEP\n",
-            by[_i]);
+  JOB j = job_with(
+      "ball", "tests/regression/mesh/square.geo",
+      "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=0.001\n9., -5.\n"
+      "MOVE, 0., 5E-4\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n%s"
+      "*PRINT, TOTALS\n*END STEP\n",
+      by[_i]);
   ck_assert_int_eq(job_run(&j, "--no-timing --quiet"), _i == 0 ? 0 : 6);
   if (_i == 0) {
-    dat t = job_table(&j, "TOTALS", -1);
-    ck_assert_double_eq(dat_at(&t, 0, "normal"), 0);
-    dat_free(&t);
+    ck_assert_double_eq(job_value(&j, "TOTALS", -1, "normal"), 0);
   } else {
     ck_assert_ptr_nonnull(strstr(j.errors, "meets no obstacle"));
   }
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("falling");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, next_to_no_load_is_carried, 0, 9);
-  tcase_add_loop_test(tests, chosen_increments_do_not_follow_the_fall, 0, 36);
-  tcase_add_test(tests, rounding_counts_against_the_loads_of_the_step);
-  tcase_add_test(tests, no_load_at_all_ends_with_a_verdict);
-  tcase_add_loop_test(tests, a_start_inside_the_floor_by_rounding_is_none, 0,
-                      12);
-  tcase_add_test(tests, chosen_increments_do_not_follow_supports);
-  tcase_add_loop_test(tests, loads_carried_straight_lose_nothing, 0, 2);
-  tcase_add_loop_test(tests, loads_carried_straight_by_a_body_led_lose_nothing,
-                      0, 8);
-  tcase_add_loop_test(tests, loads_carried_straight_on_a_floor_led_lose_nothing,
-                      0, 4);
-  tcase_add_test(tests, supports_alone_leave_an_error_of_the_mesh);
-  tcase_add_loop_test(tests, a_body_lifted_off_keeps_no_forces, 0, 4);
-  tcase_add_loop_test(tests, a_ball_that_no_normal_meets_holds_nothing, 0, 2);
-  return unit_run("falling", tests);
-}
+UNIT_MAIN("falling")

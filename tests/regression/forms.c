@@ -3,7 +3,6 @@
  * (N2) and in its change (N3), and one static problem (P2). Where theory says
  * that they have one answer, they must give it.
  */
-#include "base/base.h"
 #include "solver/solver.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -18,9 +17,9 @@ enum { LINE = 512 };
  * for, the displacements printed at the end of each step. The number of those.
  */
 static int write_in_form(const job *j, const char *path, const char *form) {
-  char line[LINE], copy[LINE];
+  char line[LINE];
   int steps = 0;
-  snprintf(copy, sizeof copy, "%s/%s.inp", j->dir, j->name);
+  PRINTED(copy, "%s/%s.inp", j->dir, j->name);
   FILE *from = fopen(path, "r"), *to = fopen(copy, "w");
   ck_assert_ptr_nonnull(from);
   ck_assert_ptr_nonnull(to);
@@ -44,7 +43,7 @@ static int write_in_form(const job *j, const char *path, const char *form) {
 static void compare_nodes(const job *a, const job *b, int n, double tol) {
   static const char *const names[] = {"u_x", "u_y", "u_z", "u_r"};
   for (int k = 0; k < n; ++k) {
-    dat p = job_table(a, "NODES", k), q = job_table(b, "NODES", k);
+    DAT p = job_table(a, "NODES", k), q = job_table(b, "NODES", k);
     double scale = 0.0;
     for (int c = 0; c < 4; ++c)
       if (dat_has(&p, names[c])) scale = fmax(scale, dat_max(&p, names[c]));
@@ -58,8 +57,6 @@ static void compare_nodes(const job *a, const job *b, int n, double tol) {
                       "%s, block %d, row %d: %s differs by %.3g of the largest",
                       a->name, k, i, names[c], miss / scale);
       }
-    dat_free(&p);
-    dat_free(&q);
   }
 }
 
@@ -92,69 +89,61 @@ static job run_in_form(const char *path, const char *form, int *steps) {
 }
 
 /* Also those that come later: every deck of input/ with a quasistatic step. */
-START_TEST(both_forms_agree_on_every_example) {
+TEST(both_forms_agree_on_every_example) {
   glob_t decks;
   int compared = 0;
   ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &decks), 0);
   for (size_t i = 0; i < decks.gl_pathc; ++i) {
     int steps = 0;
-    job a = run_in_form(decks.gl_pathv[i], "DISPLACEMENT", &steps);
+    JOB a = run_in_form(decks.gl_pathv[i], "DISPLACEMENT", &steps);
     if (steps > 0) {
-      job b = run_in_form(decks.gl_pathv[i], "VELOCITY", &steps);
+      JOB b = run_in_form(decks.gl_pathv[i], "VELOCITY", &steps);
       ck_assert_int_eq(job_stage(&a, "velocity form", NULL), 0);
       ck_assert_int_gt(job_stage(&b, "velocity form", NULL), 0);
       compare_nodes(&a, &b, count_blocks(&a), 1e-8);
-      job_end(&b);
       ++compared;
     }
-    job_end(&a);
   }
   globfree(&decks);
   ck_assert_int_ge(compared, 5);
 }
-END_TEST
 
 /* Unit square pushed from the side, held on the right; the obstacle moves. */
 static job run_square(const char *solver, const char *procedure,
                       const char *move, const char *loads) {
-  job j = job_begin("square");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "square.inp",
-            "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.6\n"
-            "*STEP\n%s*BOUNDARY\nRIGHT, 1, 2\n%s*SOLVER, METHOD=%s\n"
-            "*PRINT, NODES\n*END STEP\n",
-            move, procedure, loads, solver);
+  job j = job_with("square", "tests/regression/mesh/square.geo",
+                   "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
+                   "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                   "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+                   "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+                   "*FRICTION, CONTACT=C, LAW=COULOMB\n0.6\n"
+                   "*STEP\n%s*BOUNDARY\nRIGHT, 1, 2\n%s*SOLVER, METHOD=%s\n"
+                   "*PRINT, NODES\n*END STEP\n",
+                   move, procedure, loads, solver);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "%s: exit %d: %s", solver, code, j.errors);
   return j;
 }
 
 /* Push, then let go half of it: part of the slip stays. Every method. */
-START_TEST(both_forms_agree_with_every_method) {
+TEST(both_forms_agree_with_every_method) {
   static const char loads[] =
       "*DSLOAD\nTOP, P, \"5*min(1, 2*t)\"\nLEFT, P, \"15*(1-abs(2*t-1))\"\n";
   static const char move[] = "MOVE, \"2e-3*t^2\", \"1e-3*t\"\n";
   for (int k = 0; solver_list[k] != NULL; ++k) {
     const char *name = solver_list[k]->name;
-    job a = run_square(name, "*QUASISTATIC\n0.25, 1.\n", move, loads);
-    job b = run_square(name, "*QUASISTATIC, FORM=VELOCITY\n0.25, 1.\n", move,
+    JOB a = run_square(name, "*QUASISTATIC\n0.25, 1.\n", move, loads);
+    JOB b = run_square(name, "*QUASISTATIC, FORM=VELOCITY\n0.25, 1.\n", move,
                        loads);
     compare_nodes(&a, &b, 4, 1e-8);
-    job_end(&a);
-    job_end(&b);
   }
 }
-END_TEST
 
 /* Starts that are not the last equilibrium: in the air the answer without
  * contact, then a touch at the end of an increment; the line through the last
  * two states. The slip counts from the equilibrium all the same. */
-START_TEST(both_forms_agree_from_other_starts) {
+TEST(both_forms_agree_from_other_starts) {
   static const struct {
     const char *solver, *move, *loads;
   } row[] = {
@@ -164,77 +153,61 @@ START_TEST(both_forms_agree_from_other_starts) {
       {"AUTO, TOL=BALANCED\n*ACCURACY, MESH=YES, TIME=YES", "",
        "RIGHT, 1, 1, -0.02\nRIGHT, 2, 2, \"-0.02*min(1, 3*t)\"\n"}};
   for (size_t k = 0; k < sizeof row / sizeof *row; ++k) {
-    job a = run_square(row[k].solver, "*QUASISTATIC\n0.125, 1.\n", row[k].move,
+    JOB a = run_square(row[k].solver, "*QUASISTATIC\n0.125, 1.\n", row[k].move,
                        row[k].loads);
-    job b =
+    JOB b =
         run_square(row[k].solver, "*QUASISTATIC, FORM=VELOCITY\n0.125, 1.\n",
                    row[k].move, row[k].loads);
     compare_nodes(&a, &b, 8, 1e-8);
-    job_end(&a);
-    job_end(&b);
   }
 }
-END_TEST
 
 /* The lower of two blocks is let go in the second step: its nodes at the wall
  * join those of the upper one. */
 static job run_wall(const char *form) {
-  job j = job_begin("wall");
-  job_copy(&j, "tests/regression/mesh/pair.geo");
-  job_write(&j, "wall.inp",
-            "*PARAMETER\nN = 8\nM = 2\n*MESH, FILE=pair.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
-            "*OBSTACLE, NAME=W, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=LEFT, OBSTACLE=W\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
-            "*STEP\n*QUASISTATIC, FORM=%s\n0.5, 1.\n*BOUNDARY\nLOWER, 1, 2\n"
-            "TOP, 2\n*DSLOAD\nRIGHT, P, 5.\nRIGHT, TY, 1.\n*PRINT, NODES\n"
-            "*END STEP\n*STEP\n*QUASISTATIC, FORM=%s\n0.5, 1.\n"
-            "*BOUNDARY, OP=NEW\nBOTTOM, 2\nTOP, 2\n*DSLOAD\nRIGHT, TY, 2.\n"
-            "*END STEP\n",
-            form, form);
+  job j =
+      job_with("wall", "tests/regression/mesh/pair.geo",
+               "*PARAMETER\nN = 8\nM = 2\n*MESH, FILE=pair.geo\n"
+               "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
+               "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+               "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+               "*OBSTACLE, NAME=W, TYPE=CONFORMING\n"
+               "*CONTACT, NAME=C, GROUP=LEFT, OBSTACLE=W\n"
+               "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+               "*STEP\n*QUASISTATIC, FORM=%s\n0.5, 1.\n*BOUNDARY\nLOWER, 1, 2\n"
+               "TOP, 2\n*DSLOAD\nRIGHT, P, 5.\nRIGHT, TY, 1.\n*PRINT, NODES\n"
+               "*END STEP\n*STEP\n*QUASISTATIC, FORM=%s\n0.5, 1.\n"
+               "*BOUNDARY, OP=NEW\nBOTTOM, 2\nTOP, 2\n*DSLOAD\nRIGHT, TY, 2.\n"
+               "*END STEP\n",
+               form, form);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "%s: exit %d: %s", form, code, j.errors);
   return j;
 }
 
-START_TEST(both_forms_agree_when_contact_nodes_join) {
-  job a = run_wall("DISPLACEMENT"), b = run_wall("VELOCITY");
+TEST(both_forms_agree_when_contact_nodes_join) {
+  JOB a = run_wall("DISPLACEMENT"), b = run_wall("VELOCITY");
   compare_nodes(&a, &b, 4, 1e-8);
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
 /* A load that grows in proportion: one static problem, or increments. */
-START_TEST(proportional_load_needs_no_path) {
+TEST(proportional_load_needs_no_path) {
   static const char loads[] = "*DSLOAD\nTOP, P, 5.\nLEFT, P, 15.\n";
   static const char *const procedures[] = {
       "*QUASISTATIC\n0.1, 1.\n", "*QUASISTATIC, FORM=VELOCITY\n0.1, 1.\n"};
-  job one = run_square("AUTO", "*STATIC\n", "", loads);
-  dat p = job_table(&one, "NODES", -1);
+  JOB one = run_square("AUTO", "*STATIC\n", "", loads);
+  DAT p = job_table(&one, "NODES", -1);
   double scale = dat_max(&p, "u_x");
   for (int k = 0; k < 2; ++k) {
-    job j = run_square("AUTO", procedures[k], "", loads);
-    dat q = job_table(&j, "NODES", -1);
+    JOB j = run_square("AUTO", procedures[k], "", loads);
+    DAT q = job_table(&j, "NODES", -1);
     for (int i = 0; i < p.n_row; ++i) {
       ck_assert_double_eq_tol(dat_at(&p, i, "u_x"), dat_at(&q, i, "u_x"),
                               1e-8 * scale);
       ck_assert_double_eq_tol(dat_at(&p, i, "u_y"), dat_at(&q, i, "u_y"),
                               1e-8 * scale);
     }
-    dat_free(&q);
-    job_end(&j);
   }
-  dat_free(&p);
-  job_end(&one);
 }
-END_TEST
 
-UNIT_MAIN("forms", both_forms_agree_on_every_example,
-          both_forms_agree_with_every_method,
-          both_forms_agree_from_other_starts,
-          both_forms_agree_when_contact_nodes_join,
-          proportional_load_needs_no_path)
+UNIT_MAIN("forms")

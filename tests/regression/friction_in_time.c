@@ -6,7 +6,6 @@
  * u_x = U at the top while its foot slips: sigma_xy = mu p everywhere (the side
  * faces carry it), the foot is at U - mu p / G.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -19,25 +18,23 @@ const int job_without_fields = 1;
 /* friction: the card before the steps; tau: side traction in the second step,
  * t from 1 to 2, U = 0.1 (t - 1); then the rest of the deck. */
 static job run_drag(const char *friction, const char *tau, const char *rest) {
-  job j = job_begin("drag");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "drag.inp",
-            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n%s" PRESS
-            "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\n"
-            "TOP, 1, 1, \"0.1*(t-1)\"\n*DSLOAD\nRIGHT, TY, \"%s\"\n"
-            "LEFT, TY, \"-(%s)\"\n%s",
-            friction, tau, tau, rest);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j =
+      job_with("drag", "tests/regression/mesh/square.geo",
+               "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+               "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n%s" PRESS
+               "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\n"
+               "TOP, 1, 1, \"0.1*(t-1)\"\n*DSLOAD\nRIGHT, TY, \"%s\"\n"
+               "LEFT, TY, \"-(%s)\"\n%s",
+               friction, tau, tau, rest);
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
   return j;
 }
 
 /* Increment k slips with coefficient mu at time t. */
 static void check_slip(const job *j, int k, double t, double mu) {
-  dat c = job_table(j, "CONTACT", k);
+  DAT c = job_table(j, "CONTACT", k);
   for (int i = 0; i < c.n_row; ++i) {
     ck_assert_double_eq(dat_at(&c, i, "status"), 1.0);
     ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), 10.0, 1e-8);
@@ -45,19 +42,10 @@ static void check_slip(const job *j, int k, double t, double mu) {
     ck_assert_double_eq_tol(dat_at(&c, i, "u_t"), 0.1 * (t - 1) - 10 * mu / 500,
                             1e-10);
   }
-  dat_free(&c);
-}
-
-static int listing_has(const job *j, const char *text) {
-  char *lst = job_file(j, "lst");
-  ck_assert_ptr_nonnull(lst);
-  int found = strstr(lst, text) != NULL;
-  free(lst);
-  return found;
 }
 
 /* mu from 0.2 at t = 1 to 0.4 at t = 2, said in four ways. */
-START_TEST(mu_of_time_in_every_way) {
+TEST(mu_of_time_in_every_way) {
   static const char *const cards[] = {
       "*FRICTION, CONTACT=F, LAW=COULOMB, TABLE=T\n0., 0.2, 1., 0.2\n2., 0.4\n",
       "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n0., 1., 1., 1., 2., 2.\n"
@@ -68,74 +56,63 @@ START_TEST(mu_of_time_in_every_way) {
       "*FRICTION, CONTACT=F, LAW=TRESCA\n\"2*max(1, t)\"\n",
       "*FRICTION, CONTACT=F, LAW=TRESCA, TABLE=T\n1., 2., 2., 4.\n"};
   for (size_t k = 0; k < sizeof cards / sizeof *cards; ++k) {
-    job j = run_drag(cards[k], "2*t", "*END STEP\n");
+    JOB j = run_drag(cards[k], "2*t", "*END STEP\n");
     for (int i = 1; i <= 4; ++i) {
       double t = 1 + 0.25 * i;
       check_slip(&j, i, t, 0.2 * t);
     }
-    ck_assert(!listing_has(&j, "jumps at"));
-    job_end(&j);
+    ck_assert(!job_tells(&j, "jumps at"));
   }
 }
-END_TEST
 
 /* A constant in quotes is a course too; the floor that moves by a number gets
  * there at the end of the first step, as a load does, and stays. */
-START_TEST(constant_amplitude_and_motion) {
-  job j = job_begin("push");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "push.inp",
-            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"2*0.1\"\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\nMOVE, 0., 0.01\n"
-            "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=F, LAW=COULOMB, AMPLITUDE=A\n1.5\n"
-            "*STEP\n*QUASISTATIC\n0.5, 2.\n*BOUNDARY\nTOP, 1, 2\n"
-            "*PRINT, CONTACT\n*END STEP\n*STEP\n*QUASISTATIC\n0.5, 1.\n"
-            "*END STEP\n");
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+TEST(constant_amplitude_and_motion) {
+  JOB j =
+      job_with("push", "tests/regression/mesh/square.geo",
+               "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"2*0.1\"\n"
+               "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\nMOVE, 0., 0.01\n"
+               "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+               "*FRICTION, CONTACT=F, LAW=COULOMB, AMPLITUDE=A\n1.5\n"
+               "*STEP\n*QUASISTATIC\n0.5, 2.\n*BOUNDARY\nTOP, 1, 2\n"
+               "*PRINT, CONTACT\n*END STEP\n*STEP\n*QUASISTATIC\n0.5, 1.\n"
+               "*END STEP\n");
+  CK_EXIT(job_run(&j, ""), 0, j);
   for (int k = 0; k < 6; ++k) {
     double p = fmin(10.0, 2.5 * (k + 1));
-    dat c = job_table(&j, "CONTACT", k);
+    DAT c = job_table(&j, "CONTACT", k);
     for (int i = 0; i < c.n_row; ++i) {
       ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), p, 1e-8);
       ck_assert_double_eq_tol(dat_at(&c, i, "limit"),
                               0.3 * dat_at(&c, i, "f_n"), 1e-12);
     }
-    dat_free(&c);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* The jump of the expression at t = 1.6 is found between two increments. */
-START_TEST(jump_of_an_expression_is_told) {
-  job j =
+TEST(jump_of_an_expression_is_told) {
+  JOB j =
       run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n\"if(t < 1.6, 0.2, 0.3)\"\n",
                "if(t < 1.6, 2, 3)", "*END STEP\n");
   for (int i = 1; i <= 4; ++i)
     check_slip(&j, i, 1 + 0.25 * i, i < 3 ? 0.2 : 0.3);
-  ck_assert(listing_has(
+  ck_assert(job_tells(
       &j, "  mu of contact F jumps at t = 1.6 from 0.2 to 0.3, node 1\n"));
-  job_end(&j);
 }
-END_TEST
 
 /* A course that comes to zero at the end of an increment has no jump. */
-START_TEST(course_down_to_zero_is_no_jump) {
-  job j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n\"0.4*(2 - t)\"\n",
+TEST(course_down_to_zero_is_no_jump) {
+  JOB j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n\"0.4*(2 - t)\"\n",
                    "4*(2 - t)", "*END STEP\n");
   for (int i = 1; i <= 4; ++i) check_slip(&j, i, 1 + 0.25 * i, 0.4 - 0.1 * i);
-  ck_assert(!listing_has(&j, "jumps at"));
-  job_end(&j);
+  ck_assert(!job_tells(&j, "jumps at"));
 }
-END_TEST
 
 /* Another card in a step counts from there on, in later steps too. */
-START_TEST(friction_card_in_a_step_takes_over) {
-  job j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n0.8\n", "2+0*t",
+TEST(friction_card_in_a_step_takes_over) {
+  JOB j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n0.8\n", "2+0*t",
                    "*FRICTION, CONTACT=F, LAW=COULOMB\n0.2\n*END STEP\n"
                    "*STEP\n*QUASISTATIC\n0.5, 1.\n*END STEP\n"
                    "*STEP\n*QUASISTATIC\n0.5, 1.\n"
@@ -144,20 +121,18 @@ START_TEST(friction_card_in_a_step_takes_over) {
                    "*BOUNDARY\nTOP, 1, 1, \"0.1*(t-1)\"\n*END STEP\n");
   for (int i = 1; i <= 6; ++i)
     check_slip(&j, i, i < 5 ? 1 + 0.25 * i : 2 + 0.5 * (i - 4), 0.2);
-  ck_assert(listing_has(
+  ck_assert(job_tells(
       &j, "  mu of contact F jumps at t = 1 from 0.8 to 0.2, node 1\n"));
   check_slip(&j, 7, 3.5, 0.3);
   check_slip(&j, 8, 4, 0.3);
-  ck_assert(listing_has(
+  ck_assert(job_tells(
       &j, "  friction of contact F changes at t = 3 from COULOMB to TRESCA\n"));
-  job_end(&j);
 }
-END_TEST
 
 /* Each node slips as before a new card: the contraction, of an error that is
  * bounded, is that of its mu, to which it is proportional. */
-START_TEST(contraction_is_that_of_the_card) {
-  job j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n0.1\n", "1+0*t",
+TEST(contraction_is_that_of_the_card) {
+  JOB j = run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n0.1\n", "1+0*t",
                    "*END STEP\n*STEP\n*QUASISTATIC\n0.5, 0.5\n"
                    "*FRICTION, CONTACT=F, LAW=COULOMB\n0.2\n"
                    "*DSLOAD\nRIGHT, TY, \"2+0*t\"\nLEFT, TY, \"-2-0*t\"\n"
@@ -172,17 +147,15 @@ START_TEST(contraction_is_that_of_the_card) {
   ck_assert_double_gt(before, 0.0);
   ck_assert_double_eq_tol(rate, 2.0 * before, 0.1 * before);
   free(json);
-  job_end(&j);
 }
-END_TEST
 
 /* No friction on the left half: each node has its own limit. */
-START_TEST(mu_is_zero_in_places) {
-  job j = run_drag(
+TEST(mu_is_zero_in_places) {
+  JOB j = run_drag(
       "*FRICTION, CONTACT=F, LAW=COULOMB\n"
       "\"if(x < 0.4, 0, 0.3)\"\n",
       "3*x*x", "*END STEP\n");
-  dat c = job_table(&j, "CONTACT", -1);
+  DAT c = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < c.n_row; ++i) {
     double mu = dat_at(&c, i, "x") < 0.4 ? 0.0 : 0.3;
     ck_assert_double_eq(dat_at(&c, i, "status"), 1.0);
@@ -190,15 +163,12 @@ START_TEST(mu_is_zero_in_places) {
     ck_assert_double_eq_tol(dat_at(&c, i, "f_t"), -mu * dat_at(&c, i, "f_n"),
                             1e-9);
   }
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* Two groups on one floor, each with its own mu: both slip, the resultants
  * tell. */
-START_TEST(mu_by_group) {
-  job j = job_begin("groups");
+TEST(mu_by_group) {
+  JOB j = job_begin("groups");
   job_write(&j, "groups.geo",
             "h = 0.25;\nPoint(1)={0,0,0,h};Point(2)={.5,0,0,h};"
             "Point(3)={1,0,0,h};Point(4)={1,1,0,h};Point(5)={0,1,0,h};"
@@ -219,20 +189,16 @@ START_TEST(mu_by_group) {
             "*FRICTION, CONTACT=B, LAW=COULOMB\n0.6\n"
             "*BOUNDARY\nTOP, 1, 1, 0.2\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 0);
-  ck_assert(
-      listing_has(&j, "  mu of contact B jumps at t = 1 from 0.7 to 0.6"));
-  ck_assert(!listing_has(&j, "contact A jumps"));
-  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert(job_tells(&j, "  mu of contact B jumps at t = 1 from 0.7 to 0.6"));
+  ck_assert(!job_tells(&j, "contact A jumps"));
+  DAT t = job_table(&j, "TOTALS", -1);
   for (int k = 0; k < 2; ++k) {
     ck_assert_double_gt(dat_at(&t, k, "normal"), 1.0);
     ck_assert_double_eq_tol(dat_at(&t, k, "tangential"),
                             -(k == 0 ? 0.05 : 0.6) * dat_at(&t, k, "normal"),
                             1e-9);
   }
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * The top turns at 0.56, between the times that the increments and their halves
@@ -279,46 +245,33 @@ static job run_turning(int k, const char *increment, const char *time) {
   return j;
 }
 
-START_TEST(turn_within_an_increment_is_an_error_of_the_steps) {
+TEST(turn_within_an_increment_is_an_error_of_the_steps) {
   for (int k = 0; k < TREMBLING; ++k) {
-    job a = run_turning(k, "0.25", "YES"), b = run_turning(k, "0.02", "YES");
+    JOB a = run_turning(k, "0.25", "YES"), b = run_turning(k, "0.02", "YES");
     const double right = job_difference(&a, &b, -1),
                  told = job_told(&a, "time_error_percent");
     ck_assert_double_gt(right, 1.0);
     ck_assert_msg(told >= 0.8 * right && told <= 2 * right, "%d: %g, right %g",
                   k, told, right);
-    job_end(&a);
-    job_end(&b);
   }
 }
-END_TEST
 
 /* Increments that the program chooses are so short that it is known. */
-START_TEST(balanced_increments_are_as_short_as_turns_require) {
-  job j = run_turning(TREMBLING, "1.", "BALANCED, MESH=YES");
-  ck_assert(!listing_has(&j, "error of the steps: unknown"));
-  ck_assert(listing_has(&j, "error of the steps: about"));
-  job_end(&j);
+TEST(balanced_increments_are_as_short_as_turns_require) {
+  JOB j = run_turning(TREMBLING, "1.", "BALANCED, MESH=YES");
+  ck_assert(!job_tells(&j, "error of the steps: unknown"));
+  ck_assert(job_tells(&j, "error of the steps: about"));
 }
-END_TEST
 
 /* Where it turns too often nothing is told, from there on. */
-START_TEST(turns_without_number_leave_the_error_unknown) {
-  job j = run_turning(TREMBLING, "0.25", "YES");
-  ck_assert(listing_has(&j,
-                        "error of the steps: unknown, the loads turn too "
-                        "often in an increment"));
-  ck_assert(listing_has(&j,
-                        "error of the steps: unknown, that of an increment "
-                        "before is"));
-  job_end(&j);
+TEST(turns_without_number_leave_the_error_unknown) {
+  JOB j = run_turning(TREMBLING, "0.25", "YES");
+  ck_assert(job_tells(&j,
+                      "error of the steps: unknown, the loads turn too "
+                      "often in an increment"));
+  ck_assert(job_tells(&j,
+                      "error of the steps: unknown, that of an increment "
+                      "before is"));
 }
-END_TEST
 
-UNIT_MAIN("friction in time", mu_of_time_in_every_way,
-          constant_amplitude_and_motion, jump_of_an_expression_is_told,
-          course_down_to_zero_is_no_jump, friction_card_in_a_step_takes_over,
-          contraction_is_that_of_the_card, mu_is_zero_in_places, mu_by_group,
-          turn_within_an_increment_is_an_error_of_the_steps,
-          balanced_increments_are_as_short_as_turns_require,
-          turns_without_number_leave_the_error_unknown)
+UNIT_MAIN("friction in time")

@@ -4,7 +4,6 @@
  * 54,000 nodes; what stops the passes, and what they tell. An obstacle between
  * nodes, which goals and the norm of the energy see.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/mesh_file.h"
@@ -110,17 +109,16 @@ static void ck_percent(const job *j, int n_goal, int row, double percent) {
 
 /* The true error of goal "row" is within its target. */
 static void ck_true(const job *j, int row, double exact, double most) {
-  dat t = job_table(j, "GOALS", -1);
+  DAT t = job_table(j, "GOALS", -1);
   const double value = dat_at(&t, row, "value");
   ck_assert_msg(fabs(value - exact) <= most, "goal %d: %.9g, exact %.9g +- %g",
                 row, value, exact, most);
-  dat_free(&t);
 }
 
 #define OK_OR_STOP(code, j) \
   ck_assert_msg((code) == 0, "exit %d: %s", code, (j).errors)
 
-START_TEST(every_goal_is_within_its_target) {
+TEST(every_goal_is_within_its_target) {
   static const char goals[] =
       "*PARAMETER\nHALF = \"A/2\"\nL = \"SIZE*A\"\n"
       "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=LINE, RADIUS=<HALF>, "
@@ -129,7 +127,7 @@ START_TEST(every_goal_is_within_its_target) {
       "*GOAL, NAME=TOP, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., <L>\n"
       "*GOAL, NAME=SIDE, QUANTITY=DISPLACEMENT, COMPONENT=1, "
       "TARGET=4.E-6\n<L>, 0.\n";
-  job j;
+  JOB j;
   const int code = run_with(&j, "input/hertz_line/hertz_exact", goals,
                             "*ACCURACY, MAX_CPU=20\n", "");
   OK_OR_STOP(code, j);
@@ -138,21 +136,18 @@ START_TEST(every_goal_is_within_its_target) {
   ck_true(&j, 0, 1.00026235 * P_H, 0.005 * P_H);
   ck_true(&j, 1, 1.00157562 * A_H, 0.005 * A_H);
   ck_true(&j, 3, -0.00204203522 * L_H, 4e-6);
-  char *lst = job_file(&j, "lst");
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(
       strstr(lst,
              "target 0.5 % of PEAK, 0.5 % of WIDE, 4e-06 mm SIDE: "
              "reached"));
   ck_assert_ptr_nonnull(strstr(lst, "SIDE[mm]"));
-  free(lst);
-  job_end(&j);
 }
-END_TEST
 
 /* The surface that is loaded is round: a mesh coarser than that of the deck
  * would lose a part of it, which no estimate has. */
-START_TEST(peak_of_the_sphere_in_space) {
-  job j;
+TEST(peak_of_the_sphere_in_space) {
+  JOB j;
   const int code = run_with(&j, "input/hertz_sphere/hertz_sphere_3d",
                             "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, "
                             "CONTACT=POLE, TARGET=10 %\n",
@@ -160,12 +155,8 @@ START_TEST(peak_of_the_sphere_in_space) {
   OK_OR_STOP(code, j);
   ck_ladder(&j, 1);
   ck_true(&j, 0, 4688.3, 0.06 * 4688.3);
-  dat t = job_table(&j, "TOTALS", -1);
-  ck_assert_double_gt(dat_at(&t, 0, "normal"), 0.995 * 250.0);
-  dat_free(&t);
-  job_end(&j);
+  ck_assert_double_gt(job_value(&j, "TOTALS", -1, "normal"), 0.995 * 250.0);
 }
-END_TEST
 
 static const char grip[] =
     "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1, "
@@ -173,26 +164,23 @@ static const char grip[] =
 
 /* The block pressed on its top and its side, with goals. */
 static int block(job *j, const char *goal, const char *in_step) {
-  *j = job_begin("block");
-  job_copy(j, "input/greco/greco.geo");
-  job_write(j, "block.inp",
-            "*PARAMETER\nN = 8\nSTRUCTURED = 0\n"
-            "*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
-            "130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.\n%s*STEP\n"
-            "*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\nTOP, P, 50.\n"
-            "LEFT, P, 150.\n%s*PRINT, GOALS, TOTALS\n*END STEP\n",
-            goal, in_step);
+  *j = job_with("block", "input/greco/greco.geo",
+                "*PARAMETER\nN = 8\nSTRUCTURED = 0\n"
+                "*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+                "130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+                "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n"
+                "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.\n%s*STEP\n"
+                "*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\nTOP, P, 50.\n"
+                "LEFT, P, 150.\n%s*PRINT, GOALS, TOTALS\n*END STEP\n",
+                goal, in_step);
   return job_run(j, "");
 }
 
 /* A force that friction decides, and a displacement; both reached. */
-START_TEST(force_and_slip_of_the_block) {
-  char goals[400];
-  job j;
-  snprintf(goals, sizeof goals, grip, "0.3 %");
+TEST(force_and_slip_of_the_block) {
+  JOB j;
+  PRINTED(goals, grip, "0.3 %");
   strcat(goals,
          "*GOAL, NAME=UX, QUANTITY=DISPLACEMENT, COMPONENT=1, TARGET=0.3 %\n"
          "0., 0.\n");
@@ -201,22 +189,18 @@ START_TEST(force_and_slip_of_the_block) {
   ck_ladder(&j, 2);
   ck_true(&j, 0, -1405.346, 0.003 * 1405.346);
   ck_true(&j, 1, 0.02860321, 0.003 * 0.02860321);
-  char *json = job_file(&j, "json");
+  FREED char *json = job_file(&j, "json");
   ck_assert_ptr_nonnull(strstr(json, "mesh for GRIP, UX"));
   ck_assert_ptr_nonnull(strstr(json, "\"reached\": true"));
-  free(json);
-  job_end(&j);
 }
-END_TEST
 
 /* Exit code and message of a target that cannot be reached. */
 static void must_miss(const char *goal, const char *in_step, int exit_code,
                       const char *why) {
-  job j;
+  JOB j;
   const int code = block(&j, goal, in_step);
   ck_assert_msg(code == exit_code, "%s: exit %d: %s", why, code, j.errors);
   ck_assert_msg(strstr(j.errors, why) != NULL, "%s: %s", why, j.errors);
-  job_end(&j);
 }
 
 /* A square held above, an obstacle below the middle of its only side that
@@ -236,7 +220,7 @@ static int square_on_a_bump(job *j, const char *goal, double down) {
   return job_run(j, "");
 }
 
-START_TEST(zone_between_the_first_nodes_is_found) {
+TEST(zone_between_the_first_nodes_is_found) {
   static const char *const goal[] = {"WIDTH", "PRESSURE", "FORCE"};
   /* limits of 100, 200, 400 squares along the side */
   static const double exact[] = {0.3008, 0.51026, 0.12023};
@@ -251,11 +235,9 @@ START_TEST(zone_between_the_first_nodes_is_found) {
   ck_assert_ptr_nonnull(strstr(j.errors, "G: none: too few closed nodes"));
   job_end(&j);
 }
-END_TEST
 
-START_TEST(targets_out_of_reach_say_why) {
-  char goal[400];
-  snprintf(goal, sizeof goal, grip, "0.1 %");
+TEST(targets_out_of_reach_say_why) {
+  PRINTED(goal, grip, "0.1 %");
   must_miss(goal, "*STATIC\n*ACCURACY, MAX_PASSES=2\n", 1,
             "MAX_PASSES is reached");
   must_miss(goal, "*STATIC\n*ACCURACY, MAX_CPU=0.01\n", 1, "MAX_CPU is 0.01");
@@ -271,12 +253,11 @@ START_TEST(targets_out_of_reach_say_why) {
       "15., 0.\n",
       "*STATIC\n", 2, "Point of the .geo");
 }
-END_TEST
 
 /* The middle of a block pressed on a rough floor moves not sideways, but that
  * of its mesh does: there is no percent of it. */
-START_TEST(zero_needs_a_target_in_its_unit) {
-  job j = job_begin("zero");
+TEST(zero_needs_a_target_in_its_unit) {
+  JOB j = job_begin("zero");
   job_write(&j, "zero.geo",
             "Point(1)={0,0,0,.2};Point(2)={1,0,0,.13};Point(3)={1,1,0,.3};"
             "Point(4)={.5,1,0,.3};Point(5)={0,1,0,.3};\nLine(1)={1,2};"
@@ -292,13 +273,10 @@ START_TEST(zero_needs_a_target_in_its_unit) {
             "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
             "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1, TARGET=1 %%\n"
             "0.5, 1.\n*STEP\n*STATIC\n*DSLOAD\nTOP, P, 0.01\n*END STEP\n");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 1, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 1, j);
   ck_assert_msg(strstr(j.errors, "give its TARGET= in its unit") != NULL, "%s",
                 j.errors);
-  job_end(&j);
 }
-END_TEST
 
 /* What --estimate-cost says of an error of a goal: unknowns, 0: reached. */
 static double forecast(const job *j, const char *goal, const char *level) {
@@ -319,7 +297,7 @@ static double forecast(const job *j, const char *goal, const char *level) {
 }
 
 /* The forecasts against the passes that reach two goals, one at a time. */
-START_TEST(forecasts_of_goals_are_near_the_passes) {
+TEST(forecasts_of_goals_are_near_the_passes) {
   static const char goals[] =
       "*PARAMETER\nL = \"SIZE*A\"\n"
       "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=LINE%s\n"
@@ -354,39 +332,33 @@ START_TEST(forecasts_of_goals_are_near_the_passes) {
     job_end(&j);
   }
 }
-END_TEST
 
 /* A goal that no mesh has an estimate of: its passes stay small. */
-START_TEST(forecast_of_no_estimate_takes_little_memory) {
-  job j;
+TEST(forecast_of_no_estimate_takes_little_memory) {
+  JOB j;
   int code = run_with(&j, "input/hertz_line/hertz_exact",
                       "*GOAL, NAME=NONE, QUANTITY=PRESSURE, CONTACT=LINE, "
                       "RADIUS=1E-9\n0., 0.\n",
                       "", "--estimate-cost --max-memory 60 -D N=2");
   OK_OR_STOP(code, j);
   ck_assert_ptr_nonnull(strstr(j.text, "NONE: none"));
-  job_end(&j);
 }
-END_TEST
 
 /* The mesh of the file is refined as expected; its contact stays on the circle.
  */
-START_TEST(msh_of_a_cylinder_is_refined) {
+TEST(msh_of_a_cylinder_is_refined) {
   static const mesh_number few[] = {{"NC", 2, 0}, {"R", 10, 0}, {"A", A_H, 0}};
   const mesh_source source = {.file = "input/hertz_line/hertz_line.geo",
                               .scale = 1.0,
                               .n_number = 3,
                               .numbers = few};
-  char path[200];
-  job j = job_begin("line");
-  mesh_file f;
+  JOB j = job_begin("line");
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *m = mesh_file_from(&f, &source);
+  OWNED mesh *m = mesh_file_from(&f, &source);
   ck_assert_msg(m != NULL, "%s", f.messages);
-  snprintf(path, sizeof path, "%s/line.msh", j.dir);
+  PRINTED(path, "%s/line.msh", j.dir);
   msh_write(path, m);
-  memory_free(m);
-  mesh_file_close(&f);
   job_write(&j, "line.inp",
             "*MESH, FILE=line.msh\n*MATERIAL, NAME=STEEL\n*ELASTIC\n"
             "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL\n"
@@ -405,28 +377,24 @@ START_TEST(msh_of_a_cylinder_is_refined) {
   const double has = job_told(&j, "unknowns");
   ck_assert_msg(expected > has / 2.5 && expected < 2.5 * has,
                 "%g unknowns, expected %g", has, expected);
-  dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
+  DAT t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
   ck_assert_double_eq_tol(dat_at(&t, 0, "value"), P_H, 0.01 * P_H);
   ck_assert_int_gt(c.n_row, 15);
   for (int i = 0; i < c.n_row; ++i)
     ck_assert_double_eq_tol(
         hypot(dat_at(&c, i, "x"), dat_at(&c, i, "y") - 10.0), 10.0, 1e-12);
-  dat_free(&t);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * A gap that steps by h at x under a block of length L: the error scatters
  * while passes add a few nodes only. By Betti's theorem with the uniform
  * strain e of a flat floor the force is E/(1 - nu^2) (e L - h (L - x)/H).
  */
-START_TEST(force_on_a_step_is_within_its_target) {
+TEST(force_on_a_step_is_within_its_target) {
   for (int i = 11; i < 30; i += unit_whole() ? 1 : 2) {
     const double x = 0.05 * i, right = 1000.0 / 0.91 * (0.02 - 5e-4 * (2 - x));
     told t[20];
-    job j = job_begin("step");
+    JOB j = job_begin("step");
     block_file_write(&j, (int[]){8, 4}, (double[]){2.0, 1.0}, 0);
     job_write(&j, "step.inp",
               "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
@@ -440,50 +408,37 @@ START_TEST(force_on_a_step_is_within_its_target) {
     ck_assert_msg(job_run(&j, "") == 0, "%g: %s", x, j.errors);
     const int n = ladder(&j, t, 20);
     ck_assert_double_eq_tol(t[n - 1].value, right, 1e-3 * right);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A parabola that reaches 0.2 mm into the bottom between two nodes: the energy
  * in the end is that of 276,000 unknowns, of which force and half width obey
  * a^2 = 4 P R/(pi E*); alone the first mesh is told to be wrong, but not where
  * the body has no weight and would be lifted. */
-START_TEST(obstacle_between_nodes_is_seen) {
+TEST(obstacle_between_nodes_is_seen) {
   static const struct {
     const char *gap, *cards;
   } cases[] = {{"0.002", "TOP, 1\nTOP, 2, 2, -0.0022\n*ACCURACY, TARGET=30\n"},
                {"0.002", "TOP, 1\nTOP, 2, 2, -0.0022\n"},
                {"-0.0002", "LEFT, 1\n"}};
   for (int k = 0; k < 3; ++k) {
-    job j = job_begin("parabola");
-    job_copy(&j, "tests/regression/mesh/square.geo");
-    job_write(&j, "parabola.inp",
-              "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-              "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-              "*OBSTACLE, NAME=O, TYPE=GAP\n\"%s + 20*(x - 0.29)^2\"\n"
-              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n*STEP\n*STATIC\n"
-              "*PRINT, ENERGY\n*BOUNDARY\n%s*END STEP\n",
-              cases[k].gap, cases[k].cards);
+    JOB j = job_with(
+        "parabola", "tests/regression/mesh/square.geo",
+        "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+        "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+        "*OBSTACLE, NAME=O, TYPE=GAP\n\"%s + 20*(x - 0.29)^2\"\n"
+        "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n*STEP\n*STATIC\n"
+        "*PRINT, ENERGY\n*BOUNDARY\n%s*END STEP\n",
+        cases[k].gap, cases[k].cards);
     ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
     const double error = job_told(&j, "mesh_error_worst_percent");
-    dat e = job_table(&j, "ENERGY", -1);
-    const double energy = dat_at(&e, 0, "strain_energy") / 4.0992e-6;
+    const double energy =
+        job_value(&j, "ENERGY", -1, "strain_energy") / 4.0992e-6;
     if (k == 0)
       ck_assert_msg(energy > 1.0 && energy < 1.09, "%g", energy);
     else
       ck_assert_double_eq_tol(error, k == 1 ? 100.0 : 0.0, 1e-6);
-    dat_free(&e);
-    job_end(&j);
   }
 }
-END_TEST
 
-UNIT_MAIN("goal_targets", msh_of_a_cylinder_is_refined,
-          forecasts_of_goals_are_near_the_passes,
-          forecast_of_no_estimate_takes_little_memory,
-          every_goal_is_within_its_target, peak_of_the_sphere_in_space,
-          force_and_slip_of_the_block, targets_out_of_reach_say_why,
-          zone_between_the_first_nodes_is_found,
-          force_on_a_step_is_within_its_target, obstacle_between_nodes_is_seen,
-          zero_needs_a_target_in_its_unit)
+UNIT_MAIN("goal_targets")

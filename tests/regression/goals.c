@@ -52,8 +52,7 @@ static job with_goals(const char *deck, const char *cards, const char *words) {
   job_write(&j, file, "%.*s\n%s%.*s\n*PRINT, GOALS%s", (int)(at - text), text,
             cards, (int)(end - at - 1), at + 1, end);
   free(text);
-  const int code = job_run(&j, words);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, words), 0, j);
   return j;
 }
 
@@ -67,10 +66,10 @@ static const char hertz_goals[] =
 
 /* A mesh fine at the contact: the closed forms of the half plane for these
  * means, and for the displacements of the corners of the block. */
-START_TEST(goals_of_the_half_plane_of_hertz) {
+TEST(goals_of_the_half_plane_of_hertz) {
   static const double a = 0.2348908547, p0 = 2710.278943;
   const double length = a * p0 * 200.0 / 210e3;
-  job j = with_goals("input/hertz_line/hertz_exact", hertz_goals, "-D N=16");
+  JOB j = with_goals("input/hertz_line/hertz_exact", hertz_goals, "-D N=16");
   check_goal(&j, 1, -0.00857071821 * length, 0.7, 1.4, 1.0);
   check_goal(&j, 2, -0.00204203522 * length, 0.7, 1.4, 1.0);
   check_goal(&j, 0, 1.00026235 * p0, 0.2, 2.0, 1.0);
@@ -78,40 +77,37 @@ START_TEST(goals_of_the_half_plane_of_hertz) {
   ck_assert(goal_has_verdict(&j, "WIDE", "contact_end"));
   const told peak = told_of(&j, 0), most = told_of(&j, 4);
   ck_assert_double_eq_tol(most.value, peak.value, 1e-3 * p0);
-  job_end(&j);
 }
-END_TEST
 
 /* The unsymmetric rows: the force of a contact that slips in part. */
-START_TEST(friction_force_of_the_block) {
-  job j = job_begin("side");
-  job_copy(&j, "input/greco/greco.geo");
-  job_write(&j, "side.inp",
-            "*PARAMETER\nN = 64\nSTRUCTURED = 0\n*MESH, FILE=greco.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.\n"
-            "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1\n"
-            "*GOAL, NAME=UY, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 40.\n"
-            "*GOAL, NAME=PRESSED, QUANTITY=FORCE, CONTACT=FOOT\n"
-            "*GOAL, NAME=TURN, QUANTITY=MOMENT, CONTACT=FOOT\n"
-            "0., 0.\n"
-            "*GOAL, NAME=ABOUT, QUANTITY=MOMENT, CONTACT=FOOT, COMPONENT=3\n"
-            "10., 5.\n"
-            "*GOAL, NAME=FOOT, QUANTITY=DISPLACEMENT, GROUP=CONTACT, "
-            "COMPONENT=2\n"
-            "*GOAL, NAME=PLAY, QUANTITY=DISPLACEMENT, COMPONENT=2\n"
-            "0., 40.\n40., 0.\n"
-            "*GOAL, NAME=LIFT, QUANTITY=DISPLACEMENT, COMPONENT=2, "
-            "FROM=CONTACT\n0., 40.\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\n"
-            "TOP, P, 50.\nLEFT, P, 150.\n*PRINT, GOALS, TOTALS\n*END STEP\n");
+TEST(friction_force_of_the_block) {
+  JOB j = job_with(
+      "side", "input/greco/greco.geo",
+      "*PARAMETER\nN = 64\nSTRUCTURED = 0\n*MESH, FILE=greco.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.\n"
+      "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1\n"
+      "*GOAL, NAME=UY, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 40.\n"
+      "*GOAL, NAME=PRESSED, QUANTITY=FORCE, CONTACT=FOOT\n"
+      "*GOAL, NAME=TURN, QUANTITY=MOMENT, CONTACT=FOOT\n"
+      "0., 0.\n"
+      "*GOAL, NAME=ABOUT, QUANTITY=MOMENT, CONTACT=FOOT, COMPONENT=3\n"
+      "10., 5.\n"
+      "*GOAL, NAME=FOOT, QUANTITY=DISPLACEMENT, GROUP=CONTACT, "
+      "COMPONENT=2\n"
+      "*GOAL, NAME=PLAY, QUANTITY=DISPLACEMENT, COMPONENT=2\n"
+      "0., 40.\n40., 0.\n"
+      "*GOAL, NAME=LIFT, QUANTITY=DISPLACEMENT, COMPONENT=2, "
+      "FROM=CONTACT\n0., 40.\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\n"
+      "TOP, P, 50.\nLEFT, P, 150.\n*PRINT, GOALS, TOTALS\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 0);
   check_goal(&j, 0, -1405.346, 0.8, 1.1, 1.0);
   check_goal(&j, 1, -2.27666e-4, 0.5, 2.0, 1.5);
-  dat t = job_table(&j, "TOTALS", -1);
+  DAT t = job_table(&j, "TOTALS", -1);
   ck_assert_double_eq_tol(told_of(&j, 0).value, dat_at(&t, 0, "force_x"), 1e-9);
   ck_assert_double_eq_tol(told_of(&j, 2).value, dat_at(&t, 0, "normal"), 1e-9);
   /* About another point the moment is less by its arm times the force, and so
@@ -128,18 +124,16 @@ START_TEST(friction_force_of_the_block) {
   ck_assert_double_eq_tol(lift.value, uy.value - foot.value, 1e-15);
   ck_assert_double_eq_tol(lift.error, uy.error - foot.error, 1e-15);
   ck_assert_double_eq_tol(told_of(&j, 6).error, uy.error, 1e-12);
-  dat_free(&t);
   /* Equilibrium gives the normal force whatever the mesh. */
   ck_assert_double_lt(fabs(told_of(&j, 2).error), 1e-9);
   ck_assert(goal_has_verdict(&j, "PRESSED", "reliable"));
   job_end(&j);
 }
-END_TEST
 
 /* A slice of that block in space: what friction does between the plane of
  * symmetry and the nodes next to it is in no force, but in the error. */
-START_TEST(friction_force_of_a_slice) {
-  job j = job_begin("slice");
+TEST(friction_force_of_a_slice) {
+  JOB j = job_begin("slice");
   job_write(&j, "slice.geo",
             "Point(1) = {0, 0, 0, 1.25}; Point(2) = {40, 0, 0, 1.25};\n"
             "Point(3) = {40, 40, 0, 5}; Point(4) = {0, 40, 0, 5};\n"
@@ -163,59 +157,52 @@ START_TEST(friction_force_of_a_slice) {
             "TOP, P, 50.\nLEFT, P, 150.\n*PRINT, GOALS\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 0);
   check_goal(&j, 0, 2.0 * -1405.346, 0.85, 1.1, 1.0);
-  job_end(&j);
 }
-END_TEST
 
 /* The block pressed, pushed, pulled back and pushed again; its stiffness formed
  * or not. */
 static job to_and_fro(const char *kind) {
-  job j = job_begin("fro");
-  job_copy(&j, "input/greco/greco.geo");
-  job_write(&j, "fro.inp",
-            "*PARAMETER\nN = 32\nSTRUCTURED = 0\n*MESH, FILE=greco.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.4\n"
-            "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1\n"
-            "*GOAL, NAME=UY, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 40.\n"
-            "*GOAL, NAME=WORK, QUANTITY=FRICTION WORK\n"
-            "*GOAL, NAME=E, QUANTITY=ENERGY\n"
-            "*AMPLITUDE, NAME=PRESS\n0., 0., 1., 1., 4., 1.\n"
-            "*AMPLITUDE, NAME=FRO\n0., 0., 1., 0., 2., 1., 3., -.4, 4., .4\n"
-            "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n"
-            "*DSLOAD, AMPLITUDE=PRESS\nTOP, P, 50.\n"
-            "*DSLOAD, AMPLITUDE=FRO\nLEFT, P, 70.\n*PRINT, GOALS\n"
-            "*SOLVER, STIFFNESS=%s\n*END STEP\n",
-            kind);
+  job j =
+      job_with("fro", "input/greco/greco.geo",
+               "*PARAMETER\nN = 32\nSTRUCTURED = 0\n*MESH, FILE=greco.geo\n"
+               "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+               "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+               "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+               "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n"
+               "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.4\n"
+               "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1\n"
+               "*GOAL, NAME=UY, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 40.\n"
+               "*GOAL, NAME=WORK, QUANTITY=FRICTION WORK\n"
+               "*GOAL, NAME=E, QUANTITY=ENERGY\n"
+               "*AMPLITUDE, NAME=PRESS\n0., 0., 1., 1., 4., 1.\n"
+               "*AMPLITUDE, NAME=FRO\n0., 0., 1., 0., 2., 1., 3., -.4, 4., .4\n"
+               "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n"
+               "*DSLOAD, AMPLITUDE=PRESS\nTOP, P, 50.\n"
+               "*DSLOAD, AMPLITUDE=FRO\nLEFT, P, 70.\n*PRINT, GOALS\n"
+               "*SOLVER, STIFFNESS=%s\n*END STEP\n",
+               kind);
   ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
   return j;
 }
 
 /* Where nodes stick, they do so in error: without that the ratios of the last
  * increment are 0.43, 3.2, 0.01. */
-START_TEST(errors_of_earlier_increments_are_in_it) {
-  job j = to_and_fro("AUTO");
+TEST(errors_of_earlier_increments_are_in_it) {
+  JOB j = to_and_fro("AUTO");
   check_goal(&j, 0, -205.785, 0.8, 1.2, 1.0);
   check_goal(&j, 1, -0.012159874, 0.8, 1.25, 1.0);
   check_goal(&j, 2, 5.204, 0.5, 1.1, 1.0);
   check_goal(&j, 3, 14.9095, 0.8, 1.25, 1.0);
   ck_assert(goal_has_verdict(&j, "UY", "reliable"));
   /* All of the base sticks: it ends at the corner alone. */
-  dat t = job_table(&j, "GOALS", 0);
-  ck_assert_double_gt(dat_at(&t, 0, "contact_ends"), 3.0);
-  dat_free(&t);
-  job_end(&j);
+  ck_assert_double_gt(job_value(&j, "GOALS", 0, "contact_ends"), 3.0);
 }
-END_TEST
 
 /* The zone of stick grows with the load: what its edges were when they began
  * to stick counts, and the work that they do before. Reference: meshes
  * of make verify. */
-START_TEST(work_of_a_zone_of_stick_that_grows) {
-  job j = with_goals("input/spence/spence",
+TEST(work_of_a_zone_of_stick_that_grows) {
+  JOB j = with_goals("input/spence/spence",
                      "*PARAMETER\nHALF = \"A/2\"\n"
                      "*GOAL, NAME=WORK, QUANTITY=FRICTION WORK\n"
                      "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=LINE, "
@@ -226,53 +213,46 @@ START_TEST(work_of_a_zone_of_stick_that_grows) {
   check_goal(&j, 0, 4.42286e-3, 0.65, 1.2, 1.0);
   check_goal(&j, 1, 2902.717, 0.6, 1.2, 1.0);
   check_goal(&j, 2, 84.261, 0.6, 1.4, 1.0);
-  job_end(&j);
 }
-END_TEST
 
 /* A corner that has slid sticks where it is while a part of the load goes: it
  * keeps its displacement, and the error of that. */
 static void check_stays(const char *type) {
-  job j = job_begin("stays");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "stays.inp",
-            "*PARAMETER\nN = 5\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
-            "TYPE=%s\n*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.2\n*GOAL, NAME=CORNER, "
-            "QUANTITY=DISPLACEMENT, COMPONENT=1\n1., 0.\n"
-            "*STEP\n*QUASISTATIC\n1., 2.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\n"
-            "TOP, P, \"10*min(t,1)\"\nRIGHT, TX, \"if(t<1.5, 10, 9)\"\n"
-            "*PRINT, GOALS, CONTACT\n*END STEP\n",
-            type);
+  JOB j =
+      job_with("stays", "tests/regression/mesh/square.geo",
+               "*PARAMETER\nN = 5\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+               "TYPE=%s\n*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+               "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+               "*FRICTION, CONTACT=C, LAW=COULOMB\n0.2\n*GOAL, NAME=CORNER, "
+               "QUANTITY=DISPLACEMENT, COMPONENT=1\n1., 0.\n"
+               "*STEP\n*QUASISTATIC\n1., 2.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\n"
+               "TOP, P, \"10*min(t,1)\"\nRIGHT, TX, \"if(t<1.5, 10, 9)\"\n"
+               "*PRINT, GOALS, CONTACT\n*END STEP\n",
+               type);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   double value[2], error[2];
   for (int k = 0; k < 2; ++k) {
-    dat t = job_table(&j, "GOALS", k), c = job_table(&j, "CONTACT", k);
+    DAT t = job_table(&j, "GOALS", k), c = job_table(&j, "CONTACT", k);
     const int corner = dat_row_near(&c, "node_no", 2);
     ck_assert_double_eq(dat_at(&c, corner, "status"), k == 0 ? 1.0 : 2.0);
     value[k] = dat_at(&t, 0, "value");
     error[k] = dat_at(&t, 0, "error");
-    dat_free(&c);
-    dat_free(&t);
   }
   ck_assert_double_eq_tol(value[1], value[0], 1e-12);
   ck_assert_double_gt(fabs(error[0]), 1e-3 * fabs(value[0]));
   ck_assert_double_eq_tol(error[1], error[0], 1e-9 * fabs(error[0]));
-  job_end(&j);
 }
 
-START_TEST(node_that_stays_where_it_slid_keeps_its_error) {
+TEST(node_that_stays_where_it_slid_keeps_its_error) {
   check_stays("CPE3");
   check_stays("CPS3");
   check_stays("CAX3");
 }
-END_TEST
 
 /* The condensed stiffness is formed, or known by products and solves. */
-START_TEST(both_kinds_of_stiffness_give_the_same) {
-  job dense = to_and_fro("DENSE"), factor = to_and_fro("FACTOR");
+TEST(both_kinds_of_stiffness_give_the_same) {
+  JOB dense = to_and_fro("DENSE"), factor = to_and_fro("FACTOR");
   for (int k = 0; k < 4; ++k) {
     const told a = told_of(&dense, k), b = told_of(&factor, k);
     ck_assert_double_eq_tol(b.value, a.value, 1e-9 * fabs(a.value));
@@ -280,13 +260,10 @@ START_TEST(both_kinds_of_stiffness_give_the_same) {
     ck_assert_double_eq_tol(b.band, a.band, 1e-9 * fabs(a.band));
     ck_assert_double_eq_tol(b.ends, a.ends, 1e-9 * a.ends);
   }
-  job_end(&dense);
-  job_end(&factor);
 }
-END_TEST
 
 /* On the axis, and in space: 3 P/(2 pi a^2), a = (3 P R/(4 E*))^(1/3). */
-START_TEST(peak_and_width_of_the_sphere) {
+TEST(peak_and_width_of_the_sphere) {
   static const char goals[] =
       "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=POLE\n"
       "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=POLE\n"
@@ -310,12 +287,11 @@ START_TEST(peak_and_width_of_the_sphere) {
   ck_assert(goal_has_verdict(&j, "WIDE", "not_covered"));
   job_end(&j);
 }
-END_TEST
 
 /* The largest pressure of a node is some edges away from the pole, the largest
  * mean is not. */
-START_TEST(largest_mean_in_space_is_at_the_pole) {
-  job j = with_goals("input/hertz_sphere/hertz_sphere_3d",
+TEST(largest_mean_in_space_is_at_the_pole) {
+  JOB j = with_goals("input/hertz_sphere/hertz_sphere_3d",
                      "*GOAL, NAME=MOST, QUANTITY=PRESSURE, CONTACT=POLE\n"
                      "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=POLE\n"
                      "0., 0., 0.\n",
@@ -323,29 +299,25 @@ START_TEST(largest_mean_in_space_is_at_the_pole) {
   const told most = told_of(&j, 0), at = told_of(&j, 1);
   ck_assert_double_eq_tol(most.value, at.value, 1e-3 * at.value);
   ck_assert_double_eq_tol(most.error, at.error, 1e-3 * at.value);
-  job_end(&j);
 }
-END_TEST
 
 /* A bar under its weight, held at its foot: the displacement of a node is exact
  * (closed form at the top rho g L^2/(2 E)), the energy is not: per area it is
  * (rho g)^2 L^3/(6 E), less by its error in the energy norm. */
-START_TEST(energy_of_a_bar_under_its_weight) {
-  job j = job_begin("bar");
-  job_copy(&j, "input/greco/greco.geo");
-  job_write(&j, "bar.inp",
-            "*PARAMETER\nN = 8\nSTRUCTURED = 1\n*MESH, FILE=greco.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
-            "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=2\n"
-            "*GOAL, NAME=E, QUANTITY=ENERGY\n"
-            "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=BODY, COMPONENT=YY\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nCONTACT, 1, 2, 0.\nSYMMETRY, 1, 1, 0.\n"
-            "LEFT, 1, 1, 0.\n*DLOAD\nBODY, BY, -1.\n*PRINT, GOALS\n"
-            "*ACCURACY, MESH=NO\n"
-            "*END STEP\n");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+TEST(energy_of_a_bar_under_its_weight) {
+  JOB j = job_with(
+      "bar", "input/greco/greco.geo",
+      "*PARAMETER\nN = 8\nSTRUCTURED = 1\n*MESH, FILE=greco.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+      "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=2\n"
+      "*GOAL, NAME=E, QUANTITY=ENERGY\n"
+      "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=BODY, COMPONENT=YY\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nCONTACT, 1, 2, 0.\nSYMMETRY, 1, 1, 0.\n"
+      "LEFT, 1, 1, 0.\n*DLOAD\nBODY, BY, -1.\n*PRINT, GOALS\n"
+      "*ACCURACY, MESH=NO\n"
+      "*END STEP\n");
+  CK_EXIT(job_run(&j, ""), 0, j);
   check_goal(&j, 1, 40.0 * 40.0 * 40.0 * 40.0 / 6000.0, 0.8, 1.2, 10.0);
   long bytes;
   ck_assert_int_eq(job_stage(&j, "error of mesh", &bytes), 0);
@@ -353,12 +325,10 @@ START_TEST(energy_of_a_bar_under_its_weight) {
   const told u = told_of(&j, 0), s = told_of(&j, 2);
   ck_assert_double_eq_tol(u.value + u.error, -40.0 * 40.0 / 2000.0, 2e-3 * 0.8);
   ck_assert_double_eq_tol(s.value + s.error, -20.0, 0.02);
-  job_end(&j);
 }
-END_TEST
 
 /* What the estimate does not cover has its value and says so. */
-START_TEST(goals_that_are_not_covered_say_so) {
+TEST(goals_that_are_not_covered_say_so) {
   job j = with_goals("input/greco/greco",
                      "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, "
                      "COMPONENT=1\n*GOAL, NAME=WORK, QUANTITY=FRICTION WORK\n",
@@ -370,12 +340,10 @@ START_TEST(goals_that_are_not_covered_say_so) {
                  "*GOAL, NAME=E, QUANTITY=ENERGY\n", "-D N=8");
   ck_assert(goal_has_verdict(&j, "E", "not_covered"));
   ck_assert(isfinite(told_of(&j, 0).value) && isnan(told_of(&j, 0).error));
-  char *lst = job_file(&j, "lst");
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "no estimate: not covered"));
-  free(lst);
   job_end(&j);
 }
-END_TEST
 
 /* A block of two parts side by side, 4 x 2, with "goals" and a contact. */
 static void write_block(job *j, double size, double young, const char *right,
@@ -403,14 +371,13 @@ static void write_block(job *j, double size, double young, const char *right,
             "*SOLID SECTION, ELSET=RIGHT, MATERIAL=M%s\n%s"
             "*END STEP\n",
             young, right, goals);
-  const int code = job_run(j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
+  CK_EXIT(job_run(j, ""), 0, *j);
 }
 
 /* Two parabolas below a soft block: the zone of the larger pressure, from the
  * first to the last closed node of it but for one element. */
-START_TEST(width_is_that_of_one_zone) {
-  job j = job_begin("block");
+TEST(width_is_that_of_one_zone) {
+  JOB j = job_begin("block");
   write_block(
       &j, 0.025, 1e-3, "",
       "*OBSTACLE, NAME=O, TYPE=GAP\n"
@@ -423,7 +390,7 @@ START_TEST(width_is_that_of_one_zone) {
       "0.\n"
       "*STEP\n*STATIC\n"
       "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.05\n*PRINT, GOALS, ZONES\n");
-  dat z = job_table(&j, "ZONES", -1);
+  DAT z = job_table(&j, "ZONES", -1);
   ck_assert_int_eq(z.n_row, 5);
   ck_assert_double_gt(dat_at(&z, 1, "extent"), 0.2);
   ck_assert_double_eq_tol(told_of(&j, 0).value, dat_at(&z, 3, "extent"), 0.025);
@@ -431,21 +398,16 @@ START_TEST(width_is_that_of_one_zone) {
   const told peak = told_of(&j, 1), at = told_of(&j, 2);
   ck_assert_double_eq_tol(peak.value + peak.error, at.value + at.error,
                           3e-4 * at.value);
-  dat_free(&z);
-  job_end(&j);
 }
-END_TEST
 
 /* Materials in any order: estimates are the same but for rounding. */
-START_TEST(order_of_materials_changes_no_estimate) {
+TEST(order_of_materials_changes_no_estimate) {
   static const char soft[] = "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n",
                     hard[] = "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n";
   told is[2][3];
   for (int k = 0; k < 2; ++k) {
-    job j = job_begin("layers");
-    job_copy(&j, "tests/regression/mesh/layers.geo");
-    job_write(
-        &j, "layers.inp",
+    JOB j = job_with(
+        "layers", "tests/regression/mesh/layers.geo",
         "*MESH, FILE=layers.geo\n*MATERIAL, NAME=S\n*ELASTIC\n100., 0.3\n"
         "*MATERIAL, NAME=H\n*ELASTIC\n1000., 0.3\n%s%s"
         "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
@@ -456,10 +418,8 @@ START_TEST(order_of_materials_changes_no_estimate) {
         "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -0.01\n"
         "*DSLOAD\nTOP, TX, 2.\n*PRINT, GOALS\n*END STEP\n",
         k == 0 ? soft : hard, k == 0 ? hard : soft);
-    const int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    CK_EXIT(job_run(&j, ""), 0, j);
     for (int i = 0; i < 3; ++i) is[k][i] = told_of(&j, i);
-    job_end(&j);
   }
   for (int i = 0; i < 3; ++i) {
     ck_assert_double_gt(fabs(is[0][i].error), 0);
@@ -468,13 +428,12 @@ START_TEST(order_of_materials_changes_no_estimate) {
     ck_assert_double_eq_tol(is[1][i].band, is[0][i].band, 1e-7 * is[0][i].band);
   }
 }
-END_TEST
 
 /* A uniform pressure, by means that an end of the surface cuts, that are
  * shorter than an edge, off the surface, and of two thicknesses; a node, or an
  * end of the surface, at the very radius counts as beyond it, whatever rounding
  * says of 0.1. */
-START_TEST(means_of_a_pressure_lie_on_its_surface) {
+TEST(means_of_a_pressure_lie_on_its_surface) {
   static const char *cards =
       "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
       "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
@@ -497,7 +456,7 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
       "3.7, 0.\n*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n"
       "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 10.\n"
       "*PRINT, GOALS\n";
-  job j = job_begin("block");
+  JOB j = job_begin("block");
   write_block(&j, 0.1, 1000., "", cards);
   ck_assert(goal_has_verdict(&j, "MIRROR", "reliable"));
   ck_assert(goal_has_verdict(&j, "CUT", "no_end"));
@@ -514,14 +473,12 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
   ck_assert(goal_has_verdict(&j, "MIRROR", "not_covered"));
   ck_assert(goal_has_verdict(&j, "WIDE", "not_covered"));
   ck_assert(isnan(told_of(&j, 0).value));
-  job_end(&j);
 }
-END_TEST
 
 /* The mean stress under a weight is that of its moment, whatever the mesh, and
  * the mean of two displacements has the mean of their errors. */
-START_TEST(means_are_of_volumes_and_of_nodes) {
-  job j = job_begin("block");
+TEST(means_are_of_volumes_and_of_nodes) {
+  JOB j = job_begin("block");
   write_block(&j, 0.1, 1000., "",
               "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=ALL, COMPONENT=YY\n"
               "*GOAL, NAME=L, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 2.\n"
@@ -536,35 +493,29 @@ START_TEST(means_are_of_volumes_and_of_nodes) {
   ck_assert_double_gt(fabs(l.error), 1e-3 * fabs(l.value));
   ck_assert_double_eq_tol(both.error, 0.5 * (l.error + r.error),
                           1e-6 * fabs(l.error));
-  job_end(&j);
 }
-END_TEST
 
 /* A pressed block without friction to speak of slips to both sides from its
  * middle, or, carried along, to one: the elements of the middle are an end. */
-START_TEST(slip_that_changes_its_sense_is_an_end) {
+TEST(slip_that_changes_its_sense_is_an_end) {
   double ends[2];
   for (int k = 0; k < 2; ++k) {
-    char cards[600];
-    snprintf(cards, sizeof cards,
-             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-             "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
-             "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.E-5\n"
-             "*GOAL, NAME=E, QUANTITY=ENERGY\n*STEP\n*STATIC\n"
-             "*BOUNDARY\nTOP, 1, 1, %d.\n*DSLOAD\nTOP, P, \"10. + x\"\n"
-             "*PRINT, GOALS, TOTALS\n",
-             k);
-    job j = job_begin("block");
+    PRINTED(cards,
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.E-5\n"
+            "*GOAL, NAME=E, QUANTITY=ENERGY\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nTOP, 1, 1, %d.\n*DSLOAD\nTOP, P, \"10. + x\"\n"
+            "*PRINT, GOALS, TOTALS\n",
+            k);
+    JOB j = job_begin("block");
     write_block(&j, 0.2, 1000., "", cards);
-    dat t = job_table(&j, "TOTALS", -1);
+    DAT t = job_table(&j, "TOTALS", -1);
     ck_assert_double_eq(dat_at(&t, 0, "open") + dat_at(&t, 0, "stick"), 0.0);
     ends[k] = told_of(&j, 0).ends;
-    dat_free(&t);
-    job_end(&j);
   }
   ck_assert_double_gt(ends[0], 1.02 * ends[1]);
 }
-END_TEST
 
 /* A tube under a pressure from inside (Lame), in plane strain: energy,
  * displacement, mean radial stress. Its elements vary in hoop strain and turn:
@@ -573,7 +524,7 @@ END_TEST
 static void check_ring(double h) {
   const int fine = h < 0.2;
   static const double widens = 1.3 / 1000.0 * 10.0 / 3.0 * (0.4 + 4.0);
-  job j = job_begin("ring");
+  JOB j = job_begin("ring");
   job_write(&j, "ring.geo",
             "h = %g;\nPoint(1) = {1, 0, 0, h};\nPoint(2) = {2, 0, 0, h};\n"
             "Point(3) = {2, 1, 0, h};\nPoint(4) = {1, 1, 0, h};\n"
@@ -591,22 +542,19 @@ static void check_ring(double h) {
             "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=TUBE, COMPONENT=XX\n"
             "*STEP\n*STATIC\n*BOUNDARY\nFACES, 2\n*DSLOAD\nINSIDE, P, 10.\n"
             "*PRINT, GOALS\n*END STEP\n");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   check_goal(&j, 1, widens, fine ? 0.7 : h < 0.4 ? 0.2 : 0.05, 1.3, 1.0);
   if (h < 0.4) check_goal(&j, 0, 10.0 * acos(-1.0) * widens, 0.8, 1.5, 1.0);
   check_goal(&j, 2, 10.0 / 3.0 * (1.0 - 8.0 / 3.0 * log(2.0)), fine ? 0.7 : 0.5,
              fine ? 1.3 : 1.5, 1.2);
   ck_assert_double_lt(told_of(&j, 1).band, 0.01 * widens);
-  job_end(&j);
 }
 
-START_TEST(goals_of_a_ring_count_the_hoop) {
+TEST(goals_of_a_ring_count_the_hoop) {
   check_ring(0.1);
   check_ring(0.25);
   check_ring(0.5);
 }
-END_TEST
 
 /* A body of 2 x 2 x 1 on a plane. */
 static void write_cube(job *j, const char *cards) {
@@ -630,14 +578,13 @@ static void write_cube(job *j, const char *cards) {
             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
             "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n%s*END STEP\n",
             cards);
-  const int code = job_run(j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
+  CK_EXIT(job_run(j, ""), 0, *j);
 }
 
 /* The mean of a pressure in space goes on behind planes of symmetry, and a node
  * that a support holds in the middle is on none. */
-START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
-  job j = job_begin("cube");
+TEST(means_in_space_go_on_behind_planes_of_symmetry) {
+  JOB j = job_begin("cube");
   write_cube(&j,
              "*GOAL, NAME=PIN, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
              "1., 1., 0.\n"
@@ -657,37 +604,34 @@ START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
   ck_assert(goal_has_verdict(&j, "CUT", "no_end"));
   job_end(&j);
 }
-END_TEST
 
 /* A support that holds the end of a contact, and no more, is no plane of
  * symmetry: neither mean nor zone goes on behind it. */
-START_TEST(ends_that_a_point_holds_are_ends) {
+TEST(ends_that_a_point_holds_are_ends) {
   static const char *const hold[] = {"END", "SIDE"};
   for (int k = 0; k < 2; ++k) {
-    char cards[500];
-    job j = job_begin("block");
-    snprintf(cards, sizeof cards,
-             "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/100\"\n"
-             "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
-             "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.3\n"
-             "0., 0.\n*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n"
-             "*STEP\n*STATIC\n*BOUNDARY\n%s, 1\nTOP, 2, 2, -0.05\n"
-             "*PRINT, GOALS\n",
-             hold[k]);
+    JOB j = job_begin("block");
+    PRINTED(cards,
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/100\"\n"
+            "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
+            "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.3\n"
+            "0., 0.\n*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n"
+            "*STEP\n*STATIC\n*BOUNDARY\n%s, 1\nTOP, 2, 2, -0.05\n"
+            "*PRINT, GOALS\n",
+            hold[k]);
     write_block(&j, 0.1, 1000., "", cards);
     ck_assert_int_eq(isnan(told_of(&j, 0).value), k == 0);
     ck_assert_int_eq(goal_has_verdict(&j, "WIDE", "no_end"), k == 0);
     job_end(&j);
   }
 }
-END_TEST
 
 /* A ring in a wider hole: the contact is all of its outer circle, or the lower
  * half: what lies above the zone is no part of it. */
-START_TEST(zones_of_closed_curves_are_those_of_an_arc) {
+TEST(zones_of_closed_curves_are_those_of_an_arc) {
   told g[2][2];
   for (int k = 0; k < 2; ++k) {
-    job j = job_begin("ring");
+    JOB j = job_begin("ring");
     job_write(&j, "ring.geo",
               "h = 0.01; Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0, 0.2};\n"
               "Point(3) = {0, 1, 0, 0.2}; Point(4) = {-1, 0, 0, 0.2};\n"
@@ -713,7 +657,6 @@ START_TEST(zones_of_closed_curves_are_those_of_an_arc) {
               "*PRINT, GOALS\n*END STEP\n");
     ck_assert_int_eq(job_run(&j, ""), 0);
     for (int i = 0; i < 2; ++i) g[k][i] = told_of(&j, i);
-    job_end(&j);
   }
   for (int i = 0; i < 2; ++i) {
     ck_assert_double_gt(g[1][i].value, 0.1);
@@ -721,37 +664,31 @@ START_TEST(zones_of_closed_curves_are_those_of_an_arc) {
     ck_assert_double_eq_tol(g[0][i].error, g[1][i].error, 1e-4 * g[1][i].value);
   }
 }
-END_TEST
 
-START_TEST(tangential_force_in_space_is_the_first) {
-  job j = job_begin("cube");
+TEST(tangential_force_in_space_is_the_first) {
+  JOB j = job_begin("cube");
   write_cube(&j,
              "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n"
              "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=TANGENT\n"
              "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.004\nTOP, 2, 2, 0.002\n"
              "*DSLOAD\nTOP, P, 10.\n*PRINT, GOALS, TOTALS\n");
-  dat t = job_table(&j, "TOTALS", -1);
+  DAT t = job_table(&j, "TOTALS", -1);
   ck_assert_double_gt(fabs(dat_at(&t, 0, "tangential_2")), 1.0);
   ck_assert_double_eq_tol(told_of(&j, 0).value, dat_at(&t, 0, "tangential_1"),
                           1e-9);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A clamped block with a round foot, turned as a whole. */
 static told of_turned_block(double angle) {
   static const char foot[] = "y + 0.05*(1 - y)*(x - 1)^2";
   const mesh_change change = {.map = {NULL, foot, NULL}, .turn = angle};
-  char path[200];
-  int *number = NULL;
-  job j = job_begin("turned");
-  snprintf(path, sizeof path, "%s/turned.msh", j.dir);
+  FREED int *number = NULL;
+  JOB j = job_begin("turned");
+  PRINTED(path, "%s/turned.msh", j.dir);
   FILE *f = fopen(path, "w");
   ck_assert_ptr_nonnull(f);
   ck_assert(scene_mesh_write(f, "rect 8 4 2 1", &change, &number));
   fclose(f);
-  free(number);
   job_write(&j, "turned.inp",
             "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -763,32 +700,14 @@ static told of_turned_block(double angle) {
             -sin(angle), cos(angle));
   ck_assert_int_eq(job_run(&j, ""), 0);
   const told g = told_of(&j, 0);
-  job_end(&j);
   return g;
 }
 
-START_TEST(errors_do_not_depend_on_the_axes) {
+TEST(errors_do_not_depend_on_the_axes) {
   const told a = of_turned_block(0.0), b = of_turned_block(0.5);
   ck_assert_double_eq_tol(a.value, b.value, 1e-9 * fabs(a.value));
   ck_assert_double_eq_tol(a.error, b.error, 1e-6 * fabs(a.error));
   ck_assert_double_eq_tol(a.band, b.band, 1e-6 * fabs(a.band));
 }
-END_TEST
 
-UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
-          friction_force_of_the_block, friction_force_of_a_slice,
-          errors_of_earlier_increments_are_in_it,
-          work_of_a_zone_of_stick_that_grows,
-          node_that_stays_where_it_slid_keeps_its_error,
-          both_kinds_of_stiffness_give_the_same, peak_and_width_of_the_sphere,
-          largest_mean_in_space_is_at_the_pole,
-          energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so,
-          order_of_materials_changes_no_estimate, width_is_that_of_one_zone,
-          means_of_a_pressure_lie_on_its_surface,
-          means_are_of_volumes_and_of_nodes,
-          slip_that_changes_its_sense_is_an_end, goals_of_a_ring_count_the_hoop,
-          means_in_space_go_on_behind_planes_of_symmetry,
-          ends_that_a_point_holds_are_ends,
-          zones_of_closed_curves_are_those_of_an_arc,
-          tangential_force_in_space_is_the_first,
-          errors_do_not_depend_on_the_axes)
+UNIT_MAIN("goals")

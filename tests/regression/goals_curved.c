@@ -3,7 +3,6 @@
  * a mesh takes at its nodes: thick rings, tubes and shells under a pressure
  * (Lame) and a column under its own load.
  */
-#include "base/base.h"
 #include "support/goal_body.h"
 #include "support/unit.h"
 
@@ -55,7 +54,7 @@ typedef struct closed {
 
 static void check_body(const char *geo, const char *section, const char *z,
                        const char *cards, const closed *c) {
-  job j = job_begin("curved");
+  JOB j = job_begin("curved");
   job_write(&j, "curved.geo", "%s", geo);
   job_write(
       &j, "curved.inp",
@@ -72,55 +71,48 @@ static void check_body(const char *geo, const char *section, const char *z,
       section, z, z, cards);
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   check_goal(&t, 0, c->u(1.0), c->off);
   check_goal(&t, 1, c->u(2.0), c->off);
   check_goal(&t, 2, c->along * c->u(2.0), 0.15);
   check_goal(&t, 3, 50.0 * c->area * c->u(1.0), 0.1);
   if (c->u == of_ring) check_goal(&t, 4, 20.0, 0.1);
-  dat_free(&t);
-  job_end(&j);
 }
 
 #define PRESSED "*DSLOAD\nINNER, P, 100.\n"
 #define PUSHED "*DSLOAD\nINNER, TX, \"100*x\"\nINNER, TY, \"100*y\"\n"
 
-START_TEST(plane_ring_under_a_pressure) {
+TEST(plane_ring_under_a_pressure) {
   check_body(QUARTER, ", TYPE=CPE3", "", PRESSED,
              &(closed){of_ring, M_2_PI, M_PI_2, 0.15});
 }
-END_TEST
 
 /* On the chord between two nodes a formula has another value. */
-START_TEST(plane_ring_under_tractions_of_a_formula) {
+TEST(plane_ring_under_tractions_of_a_formula) {
   check_body(QUARTER, ", TYPE=CPE3", "", PUSHED,
              &(closed){of_ring, M_2_PI, M_PI_2, 0.15});
 }
-END_TEST
 
-START_TEST(shell_of_revolution_under_a_pressure) {
+TEST(shell_of_revolution_under_a_pressure) {
   check_body(QUARTER, ", TYPE=CAX3", "", PRESSED,
              &(closed){of_ball, M_PI_4, 2 * M_PI, 0.8});
 }
-END_TEST
 
-START_TEST(shell_of_revolution_under_tractions_of_a_formula) {
+TEST(shell_of_revolution_under_tractions_of_a_formula) {
   check_body(QUARTER, ", TYPE=CAX3", "", PUSHED,
              &(closed){of_ball, M_PI_4, 2 * M_PI, 0.8});
 }
-END_TEST
 
-START_TEST(slice_in_space_under_a_pressure) {
+TEST(slice_in_space_under_a_pressure) {
   check_body(SLICE, "", ", 0.", "FACES, 3\n" PRESSED,
              &(closed){of_ring, M_2_PI, M_PI_4, 0.25});
 }
-END_TEST
 
 /* A disc with a hole that turns, rho omega^2 = 1000 in plane stress, and under
  * its weight of 1000: the mean of stress_yy is that of 1000 y over the body.
  * What lies beyond the chords has these forces too. */
-START_TEST(forces_on_the_body_beyond_chords) {
-  job j = job_begin("turning");
+TESTS(forces_on_the_body_beyond_chords, 2) {
+  JOB j = job_begin("turning");
   const double u = 2e-5 * 250 * (3.3 + 4 * 0.7);
   job_write(&j, "turning.geo", "%s", QUARTER);
   job_write(
@@ -137,19 +129,16 @@ START_TEST(forces_on_the_body_beyond_chords) {
               : "BODY, GRAV, 10., 0., -1.\n");
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   if (_i == 0) check_goal(&t, 0, u, 0.15);
   if (_i == 0) check_goal(&t, 1, M_2_PI * u, 0.15);
   if (_i == 1) check_goal(&t, 2, -1000 * 7.0 / 3 / (0.75 * M_PI), 0.1);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* The mean of a stress is that of the whole body, which the mesh is not: by the
  * load alone 100 times the area of INNER across x over that of the ring. */
-START_TEST(mean_stress_of_a_ring) {
-  job j = job_begin("mean");
+TEST(mean_stress_of_a_ring) {
+  JOB j = job_begin("mean");
   job_write(&j, "mean.geo", "%s", QUARTER);
   job_write(&j, "mean.inp",
             "*MESH, FILE=mean.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
@@ -158,17 +147,14 @@ START_TEST(mean_stress_of_a_ring) {
             "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n"
             "*DSLOAD\nINNER, TX, 100.\n*PRINT, GOALS\n*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   check_goal(&t, 0, 400.0 / (3.0 * M_PI), 0.1);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A ring that is shrunk by 1e-4 onto a shaft, and one whose inner surface is
  * moved by that: the gap, or the motion, is that of the surface, not of chords.
  */
-START_TEST(ring_on_a_shaft) {
+TESTS(ring_on_a_shaft, 5) {
   static const char *const on[] = {
       "CYLINDER, RADIUS=1.0001\n0., 0.\n*CONTACT, NAME=C, GROUP=INNER, "
       "OBSTACLE=S, NORMAL=OBSTACLE\n",
@@ -180,7 +166,7 @@ START_TEST(ring_on_a_shaft) {
   const int moved = on[_i][0] == '\0', solid = _i == 4;
   const double p = 1e-4 / of_ring(1.0), off = solid ? 0.25 : 0.1;
   const double wide = solid ? 0.5 : 1.0;
-  job j = job_begin("shaft");
+  JOB j = job_begin("shaft");
   job_write(&j, "shaft.geo", "%sMesh.MeshSizeMax = %g;\n",
             solid ? SLICE : QUARTER, solid ? 0.125 : 0.0625);
   job_write(
@@ -198,20 +184,17 @@ START_TEST(ring_on_a_shaft) {
               "INNER, 2, 2, \"1E-4*y/sqrt(x^2+y^2)\"\n"
             : "");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   check_goal(&t, 0, M_2_PI * p * of_ring(2.0), 0.15 + off);
   check_goal(&t, 1, 0.2 * p * 100.0, off);
   check_goal(&t, 2, wide * 0.5e-4 * p * 100.0 * M_PI_2, off);
   if (!moved) check_goal(&t, 3, wide * p * 100.0, off);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A block with a round foot of radius 2 that is pressed flat on a plane: its
  * energy is 30.822 by meshes down to an eighth of this one. */
-START_TEST(round_foot_is_pressed_flat) {
-  job j = job_begin("foot");
+TEST(round_foot_is_pressed_flat) {
+  JOB j = job_begin("foot");
   job_write(
       &j, "foot.geo",
       "Point(1) = {0, 0, 0}; Point(2) = {1, 2 - Sqrt(3), 0};\n"
@@ -229,20 +212,17 @@ START_TEST(round_foot_is_pressed_flat) {
             "*GOAL, NAME=ENERGY, QUANTITY=ENERGY\n*STEP\n*STATIC\n*BOUNDARY\n"
             "LEFT, 1\nTOP, 2, 2, -0.3\n*PRINT, GOALS\n*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   check_goal(&t, 0, 30.822, 0.2);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A ring that is held outside, on a shaft of radius 1.01 that turns: all of it
  * slips, by a given limit or one of the pressure of Lame. */
-START_TEST(shaft_turns_in_a_ring) {
+TESTS(shaft_turns_in_a_ring, 2) {
   const double A = -0.01 / 3.0, B = 0.04 / 3.0; /* u = A r + B/r */
   const double p = -1e5 / 1.3 * (A / 0.4 - B);
   const double traction = _i ? 0.2 * p : 1.5;
-  job j = job_begin("turn");
+  JOB j = job_begin("turn");
   job_write(&j, "turn.geo",
             "Point(1) = {0, 0, 0};\nFor r In {1:2}\n"
             "  Point(10*r) = {r, 0, 0}; Point(10*r+1) = {0, r, 0};\n"
@@ -266,19 +246,16 @@ START_TEST(shaft_turns_in_a_ring) {
             "*END STEP\n",
             _i ? "COULOMB\n0.2" : "TRESCA\n1.5");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   const double sense = dat_at(&t, 0, "value") < 0 ? -1 : 1;
   check_goal(&t, 0, sense * 2 * M_PI * traction, 0.12);
   check_goal(&t, 1, -sense * 2 * M_PI * traction, 0.12);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* Held all round: u = 2e-4 (4/r - r) under a pressure of 100 within. The edges
  * of the support in two of its faces are as far from it as those in one. */
-START_TEST(slice_that_a_curved_support_holds) {
-  job j = job_begin("held");
+TEST(slice_that_a_curved_support_holds) {
+  JOB j = job_begin("held");
   job_write(&j, "held.geo", "%sMesh.MeshSizeMax = 0.3;\n", SLICE);
   job_write(&j, "held.inp",
             "*MESH, FILE=held.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
@@ -289,20 +266,17 @@ START_TEST(slice_that_a_curved_support_holds) {
             "INNER, P, 100.\n*PRINT, GOALS\n*END STEP\n");
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   check_goal(&t, 0, 6e-4, 0.015);
   check_goal(&t, 1, 50.0 * M_PI / 4 * 6e-4, 0.1);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* All of its round surfaces are given u = 1e-3 (x, y), which linear elements
  * have: the stress is 1e-3 E/((1 + nu)(1 - 2 nu)) or 1e-3 E/(1 - nu) along x,
  * and errors are those of the shape alone. */
-START_TEST(ring_whose_round_surfaces_are_given) {
+TESTS(ring_whose_round_surfaces_are_given, 2) {
   const double stress = _i ? 1e2 / 0.52 : 1e2 / 0.7;
-  job j = job_begin("given");
+  JOB j = job_begin("given");
   job_write(&j, "given.geo", "%sMesh.MeshSizeMax = 0.5;\n", QUARTER);
   job_write(&j, "given.inp",
             "*MESH, FILE=given.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
@@ -316,24 +290,21 @@ START_TEST(ring_whose_round_surfaces_are_given) {
             "*PRINT, GOALS\n*END STEP\n",
             _i ? "CPE3" : "CPS3");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   check_goal(&t, 0, 1e-3 * M_2_PI, 0.02);
   const double energy[] = {1e-3 * stress * 0.75 * M_PI,
                            dat_at(&t, 1, "corrected")};
   ck_assert_double_eq_tol(energy[1], energy[0], dat_at(&t, 1, "band"));
   ck_assert_double_eq_tol(dat_at(&t, 2, "value"), stress, 1e-9 * stress);
   ck_assert_double_eq_tol(dat_at(&t, 2, "error"), 0.0, 1e-5 * stress);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* Linear elements lock in it: displacements are less than half of those of
  * Lame, of which no residual tells; a stress that loads alone give is none of
  * it. */
-START_TEST(ring_that_locks) {
+TEST(ring_that_locks) {
   static const double nu = 0.4999, stiff = 1.4999 / 1e5 * 100.0 / 3.0;
-  job j = job_begin("lock");
+  JOB j = job_begin("lock");
   job_write(&j, "lock.geo", "%sMesh.MeshSizeMax = 0.25;\n", QUARTER);
   job_write(&j, "lock.inp",
             "*MESH, FILE=lock.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.4999\n"
@@ -344,7 +315,7 @@ START_TEST(ring_that_locks) {
             "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*DSLOAD\n"
             "INNER, P, 100.\n*PRINT, GOALS\n*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   const double u = stiff * (1 - 2 * nu + 4);
   const char *const name[] = {"U", "E", "ZZ"};
   const double exact[] = {u, 50.0 * M_PI_2 * u, 200.0 / 3.0 * nu};
@@ -355,41 +326,34 @@ START_TEST(ring_that_locks) {
     ck_assert(k < 2 || band < 0.05 * exact[k]);
   }
   ck_assert_double_lt(dat_at(&t, 0, "value"), 0.5 * u);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A column of height 40 under the force c y^2 per volume: c 40^4/4/E at its
  * top. Its nodes are in error by the load alone. */
-START_TEST(column_under_a_load_of_a_formula) {
-  job j = job_begin("column");
-  job_copy(&j, "input/greco/greco.geo");
-  job_write(&j, "column.inp",
-            "*PARAMETER\nN = 8\nSTRUCTURED = 1\n*MESH, FILE=greco.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
-            "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=2\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nCONTACT, 1, 2\nSYMMETRY, 1\nLEFT, 1\n"
-            "*DLOAD\nBODY, BY, \"y^2/1000\"\n*PRINT, GOALS\n*END STEP\n");
+TEST(column_under_a_load_of_a_formula) {
+  JOB j = job_with(
+      "column", "input/greco/greco.geo",
+      "*PARAMETER\nN = 8\nSTRUCTURED = 1\n*MESH, FILE=greco.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+      "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=2\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nCONTACT, 1, 2\nSYMMETRY, 1\nLEFT, 1\n"
+      "*DLOAD\nBODY, BY, \"y^2/1000\"\n*PRINT, GOALS\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 0);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   const double is = 0.64 - dat_at(&t, 0, "value");
   ck_assert_double_gt(fabs(is), 1e-3);
   ck_assert_double_eq_tol(dat_at(&t, 0, "error"), is, 0.1 * fabs(is));
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A cube of edge 2 on a floor, half of it, loaded on half a disc of radius 0.8,
  * and the disc alone as a column: its chords leave out what is in the error of
  * the contact force, 100 pi 0.8^2/2. */
-START_TEST(round_surfaces_in_space_lose_load_at_their_rim) {
+TEST(round_surfaces_in_space_lose_load_at_their_rim) {
   static const char *const loads[] = {"P, 100.", "TZ, -100.", "TZ, \"-100\""};
   static const char *const top[] = {"2", "1:2"};
   for (int k = 0; k < 6; ++k) {
-    job j = job_begin("rim");
+    JOB j = job_begin("rim");
     job_write(&j, "rim.geo",
               "h = 0.4; Point(1) = {0, -1, 2, h}; Point(2) = {1, -1, 2, h};\n"
               "Point(3) = {1, 1, 2, h}; Point(4) = {0, 1, 2, h};\n"
@@ -428,28 +392,7 @@ START_TEST(round_surfaces_in_space_lose_load_at_their_rim) {
     ck_assert_double_eq_tol(told, is, 0.05 * is);
     ck_assert_double_le(fabs(told - is), band);
     dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("goals_curved");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_test(tests, round_surfaces_in_space_lose_load_at_their_rim);
-  tcase_add_test(tests, slice_that_a_curved_support_holds);
-  tcase_add_test(tests, plane_ring_under_a_pressure);
-  tcase_add_test(tests, plane_ring_under_tractions_of_a_formula);
-  tcase_add_test(tests, shell_of_revolution_under_a_pressure);
-  tcase_add_test(tests, shell_of_revolution_under_tractions_of_a_formula);
-  tcase_add_test(tests, slice_in_space_under_a_pressure);
-  tcase_add_loop_test(tests, forces_on_the_body_beyond_chords, 0, 2);
-  tcase_add_test(tests, mean_stress_of_a_ring);
-  tcase_add_loop_test(tests, ring_on_a_shaft, 0, 5);
-  tcase_add_loop_test(tests, ring_whose_round_surfaces_are_given, 0, 2);
-  tcase_add_test(tests, ring_that_locks);
-  tcase_add_test(tests, round_foot_is_pressed_flat);
-  tcase_add_loop_test(tests, shaft_turns_in_a_ring, 0, 2);
-  tcase_add_test(tests, column_under_a_load_of_a_formula);
-  return unit_run("goals_curved", tests);
-}
+UNIT_MAIN("goals_curved")

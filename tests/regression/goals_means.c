@@ -4,7 +4,6 @@
  * border prescribes; goals of mirror images; pressures that are no parabola
  * round their largest and no root at the end of the zone.
  */
-#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/block_file.h"
 #include "support/job.h"
@@ -62,8 +61,7 @@ static job run_field(const field *f) {
             "*STEP\n*STATIC\n%s*PRINT, GOALS\n*END STEP\n",
             f->section, f->component + 1, f->component + 1, f->component + 1,
             f->cards);
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
@@ -74,19 +72,16 @@ static const field linear[] = {
     {PLANE, ", TYPE=CAX3", GIVEN("0.3*x", 2), 0.2, 0.2, 0},
     {CUBE, "", GIVEN("0.3*x+0.1*z", 3), 0.2, 0.2, 0}};
 
-START_TEST(means_of_linear_fields_are_exact) {
-  job j = run_field(&linear[_i]);
-  dat t = job_table(&j, "GOALS", -1);
+TESTS(means_of_linear_fields_are_exact, 3) {
+  JOB j = run_field(&linear[_i]);
+  DAT t = job_table(&j, "GOALS", -1);
   const double is[3] = {linear[_i].top, linear[_i].body,
                         linear[_i].top - linear[_i].body};
   for (int k = 0; k < 3; ++k) {
     ck_assert_double_eq_tol(dat_at(&t, k, "value"), is[k], 1e-10);
     ck_assert_double_eq_tol(dat_at(&t, k, "error"), 0.0, 1e-10);
   }
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* Goal D is T less B, and so is its error. */
 static void check_difference(const dat *t) {
@@ -108,19 +103,16 @@ static const field square[] = {
      "*DLOAD\nBODY, BZ, \"-4*1000/2.6\"\n",
      4.0 / 3.0, 2.0 / 3.0, 2}};
 
-START_TEST(errors_of_means_have_what_is_between_the_nodes) {
-  job j = run_field(&square[_i]);
-  dat t = job_table(&j, "GOALS", -1);
+TESTS(errors_of_means_have_what_is_between_the_nodes, 3) {
+  JOB j = run_field(&square[_i]);
+  DAT t = job_table(&j, "GOALS", -1);
   const double found = dat_at(&t, 0, "value"), is = square[_i].top;
   ck_assert_double_gt(fabs(found - is), 1e-3);
   ck_assert_double_eq_tol(found + dat_at(&t, 0, "error"), is, 1e-10);
   const double lacks = square[_i].body - dat_at(&t, 1, "value");
   ck_assert_double_eq_tol(dat_at(&t, 1, "error"), lacks, 0.05 * fabs(lacks));
   check_difference(&t);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A ring that is warmed grows by u = x/100, which elements have: the mean over
  * an arc, not over its chords. */
@@ -129,9 +121,9 @@ static const field round_ones[] = {
     {RING, ", TYPE=CPS3", WARMED, 0.02 / M_PI, 0.28 / 9.0 / M_PI, 0},
     {RING, ", TYPE=CAX3", WARMED, M_PI / 400.0, 0.45 * M_PI / 112.0, 0}};
 
-START_TEST(errors_of_means_have_what_is_beyond_chords) {
-  job j = run_field(&round_ones[_i]);
-  dat t = job_table(&j, "GOALS", -1);
+TESTS(errors_of_means_have_what_is_beyond_chords, 2) {
+  JOB j = run_field(&round_ones[_i]);
+  DAT t = job_table(&j, "GOALS", -1);
   for (int k = 0; k < 2; ++k) {
     const double is = k == 0 ? round_ones[_i].top : round_ones[_i].body;
     const double lacks = is - dat_at(&t, k, "value");
@@ -139,10 +131,7 @@ START_TEST(errors_of_means_have_what_is_beyond_chords) {
     ck_assert_double_eq_tol(dat_at(&t, k, "error"), lacks, 0.08 * fabs(lacks));
   }
   check_difference(&t);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- mirror images ------------------------------------------------------- */
 
@@ -151,14 +140,13 @@ enum { GOALS = 18 };
 /* The verdicts of all goals, one after the other. */
 static void take_verdicts(const job *j, char *text, size_t size) {
   static const char name[] = "\"verdict\": ";
-  char *json = job_file(j, "json");
+  FREED char *json = job_file(j, "json");
   text[0] = '\0';
   for (char *at = json; (at = strstr(at, name)) != NULL;) {
     at += strlen(name);
     snprintf(text + strlen(text), size - strlen(text), "%.*s ",
              (int)strcspn(at, ",}\n"), at);
   }
-  free(json);
 }
 
 /* A block between two planes of symmetry, pressed on its foot, with pressures
@@ -171,14 +159,13 @@ static void mirrored(int image, double of[GOALS][4], char verdicts[999]) {
   const mesh_change change = {
       .map = {flip[0] ? "1-x^1.3" : "x^1.3", flip[1] ? "1-y^1.2" : "y^1.2"}};
   char path[100], goals[GOALS * 100] = "";
-  int *number = NULL;
-  job j = job_begin("mirrored");
+  FREED int *number = NULL;
+  JOB j = job_begin("mirrored");
   snprintf(path, sizeof path, "%s/mirrored.msh", j.dir);
   FILE *f = fopen(path, "w");
   ck_assert_ptr_nonnull(f);
   ck_assert(scene_mesh_write(f, "box 6 6 2 1 1 0.5", &change, &number));
   fclose(f);
-  free(number);
   for (int i = 0; i < GOALS - 2; ++i) {
     const double x = 0.26 * (i % 4) + 0.05, y = 0.95 - 0.26 * (i / 4);
     snprintf(goals + strlen(goals), sizeof goals - strlen(goals),
@@ -199,16 +186,14 @@ static void mirrored(int image, double of[GOALS][4], char verdicts[999]) {
             "*PRINT, GOALS\n*END STEP\n",
             goals, flip[0] ? "1-x" : "x", flip[1] ? "1-y" : "y");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   ck_assert_int_eq(t.n_row, GOALS);
   take_verdicts(&j, verdicts, 999);
   for (int i = 0; i < GOALS; ++i)
     for (int k = 0; k < 4; ++k) of[i][k] = dat_at(&t, i, columns[k]);
-  dat_free(&t);
-  job_end(&j);
 }
 
-START_TEST(goals_of_mirror_images_are_the_same) {
+TEST(goals_of_mirror_images_are_the_same) {
   double of[4][GOALS][4];
   char verdicts[4][999];
   int known = 0;
@@ -225,7 +210,6 @@ START_TEST(goals_of_mirror_images_are_the_same) {
   }
   ck_assert_int_ge(known, GOALS / 3);
 }
-END_TEST
 
 /* ---- halves and thicknesses ---------------------------------------------- */
 
@@ -237,7 +221,7 @@ enum { HALF_GOALS = 5 };
 static void press_bump(int both, double thickness, double of[HALF_GOALS][3],
                        char verdicts[999]) {
   static const char *const columns[] = {"value", "error", "band"};
-  job j = job_begin("bump");
+  JOB j = job_begin("bump");
   const double at = both;
   block_file_write(&j, (int[]){20 * (1 + both), 6}, (double[]){1.0 + both, 1.0},
                    1);
@@ -259,23 +243,19 @@ static void press_bump(int both, double thickness, double of[HALF_GOALS][3],
       at, thickness, 2 * thickness, at, at + 0.12, at + 0.35,
       both ? "" : "LEFT, 1\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "GOALS", -1);
-  dat sums = job_table(&j, "TOTALS", -1);
-  const double most = dat_at(&sums, 0, "pressure_max");
+  DAT t = job_table(&j, "GOALS", -1);
+  const double most = job_value(&j, "TOTALS", -1, "pressure_max");
   ck_assert_double_gt(dat_at(&t, 0, "value"), 0.7 * most);
   ck_assert_double_lt(dat_at(&t, 0, "value"), most);
-  dat_free(&sums);
   take_verdicts(&j, verdicts, 999);
   for (int i = 0; i < HALF_GOALS; ++i)
     for (int k = 0; k < 3; ++k)
       of[i][k] = dat_at(&t, i, columns[k]) * (both || i < 4 ? 1.0 : 2.0);
-  dat_free(&t);
-  job_end(&j);
 }
 
 /* Errors have more to recover from where there are both, a deeper mesh, and the
  * mean round the largest pressure is as wide as its zone on that side. */
-START_TEST(goals_of_halves_and_of_thick_plates_are_the_same) {
+TEST(goals_of_halves_and_of_thick_plates_are_the_same) {
   double half[HALF_GOALS][3], of[HALF_GOALS][3];
   char verdicts[2][999];
   press_bump(0, 1.0, half, verdicts[0]);
@@ -289,7 +269,6 @@ START_TEST(goals_of_halves_and_of_thick_plates_are_the_same) {
                       of[i][k], half[i][k]);
   }
 }
-END_TEST
 
 /* A strip, length x 1, of squares 1/n, with contact goals. */
 static job strip(int length, int n, const char *gap, const char *cards) {
@@ -323,19 +302,15 @@ static job strip(int length, int n, const char *gap, const char *cards) {
 /* A heavy strip on the floor, lifted at its end: of 60 lengths half is lifted
  * but for a height or two (a beam), and the pressures rise within the last two
  * heights alone, to where nodes begin to be open. */
-START_TEST(width_ends_between_closed_and_open_nodes) {
-  job j =
+TEST(width_ends_between_closed_and_open_nodes) {
+  JOB j =
       strip(60, 2, "0", "*DLOAD\nBODY, BY, -1E-6\n*DSLOAD\nEND, TY, 1.5E-5\n");
-  dat t = job_table(&j, "GOALS", -1), z = job_table(&j, "ZONES", -1);
+  DAT t = job_table(&j, "GOALS", -1), z = job_table(&j, "ZONES", -1);
   const double at = dat_at(&z, 0, "extent");
   ck_assert_double_eq_tol(at, 30.0, 2.0);
   ck_assert_double_eq_tol(dat_at(&t, 0, "value"), at, 0.5);
   ck_assert_double_ge(dat_at(&t, 0, "band"), 0.5);
-  dat_free(&t);
-  dat_free(&z);
-  job_end(&j);
 }
-END_TEST
 
 /* A thin layer on a flat parabola, whose pressure goes to zero along a line: by
  * three quarters of the zone its end is an edge too near. That of squares of
@@ -349,7 +324,6 @@ START_TEST(width_of_a_thin_layer_ends_at_its_last_nodes) {
   dat_free(&t);
   job_end(&j);
 }
-END_TEST
 
 /* A layer under a flat punch with a rounded edge: the largest pressure, near
  * the edge, is 42.07 by RADIUS=0.08 on squares of 1/48. A mean that half its

@@ -4,7 +4,6 @@
  * times the elements of the one before; the radius of a pressure next to a
  * plane of symmetry.
  */
-#include "base/base.h"
 #include "support/goal_body.h"
 #include "support/unit.h"
 
@@ -16,7 +15,7 @@ const int job_without_fields = 1;
 
 /* By supports alone the energy of a mesh is too large, by loads too small; by
  * both, along supports that bend, or where friction rubs, by a part of each. */
-START_TEST(energies_by_loads_and_by_supports) {
+TEST(energies_by_loads_and_by_supports) {
   static const struct {
     const char *on, *step;
     double exact, wide;
@@ -41,29 +40,24 @@ START_TEST(energies_by_loads_and_by_supports) {
        "TOP, 2, 2, \"-0.01*(1+0.5*cos(pi*x/2))\"\n",
        0.14964158, 3.0}};
   for (int k = 0; k < 6; ++k) {
-    char cards[400];
-    snprintf(cards, sizeof cards, ENERGY "%s", rows[k].step);
-    job j = body_of_block(16, rows[k].on, cards);
+    PRINTED(cards, ENERGY "%s", rows[k].step);
+    JOB j = body_of_block(16, rows[k].on, cards);
     goal_check(&j, rows[k].exact, 0.6, 1.3, rows[k].wide);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* In a ring the hoop strains vary within the elements, which is no error. */
-START_TEST(energy_of_a_ring_that_is_pressed) {
-  job j = body_of_type(", TYPE=CAX3", "rect 16 16 1 1 alternate at 1 0",
+TEST(energy_of_a_ring_that_is_pressed) {
+  JOB j = body_of_type(", TYPE=CAX3", "rect 16 16 1 1 alternate at 1 0",
                        PLANE CONTACT ENERGY
                        "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
                        "TOP, 2, 2, -0.002\n");
   goal_check(&j, 0.01944272377, 0.8, 1.2, 3.0);
-  job_end(&j);
 }
-END_TEST
 
 /* Next to the corners of a clamp stresses are infinite, and at the edge of a
  * roller in a straight side; not where it has all of the side. */
-START_TEST(ends_of_supports_are_not_reliable) {
+TEST(ends_of_supports_are_not_reliable) {
   job j = body_of_block(8, PLANE, NORMAL ENERGY PRESSED);
   ck_assert(goal_has_verdict(&j, "N", "support_end"));
   ck_assert(goal_has_verdict(&j, "E", "support_end"));
@@ -83,53 +77,45 @@ START_TEST(ends_of_supports_are_not_reliable) {
   goal_check(&j, 0.13444394, 0.8, 1.2, 0.5);
   job_end(&j);
 }
-END_TEST
 
 /* The same along the edges of a cube. */
-START_TEST(ends_of_supports_in_space) {
+TEST(ends_of_supports_in_space) {
   static const char on[] = "PLANE\n0., 0., 0.\n0., 0., 1." CONTACT NORMAL;
   static const char *const hold[] = {"TOP, 1, 2\n", "TOP, 1\nFRONT, 2\n",
                                      "LEFT, 1\nFRONT, 2\n"};
   for (int k = 0; k < 3; ++k) {
-    char cards[400];
-    snprintf(cards, sizeof cards,
-             "%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 3, 3, -0.01\n%s", on, hold[k]);
-    job j = body_of("box 4 4 4 1 1 1", cards);
+    PRINTED(cards, "%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 3, 3, -0.01\n%s", on,
+            hold[k]);
+    JOB j = body_of("box 4 4 4 1 1 1", cards);
     ck_assert(goal_has_verdict(&j, "N", k < 2 ? "support_end" : "reliable"));
     if (k == 0) goal_check(&j, 10.3045, 0.3, 1.0, 3.0);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* All of the base slips, at 0.5 whatever the pressure: the force is 1. A node
  * that a support holds has a part of it, which along the normal is lost. */
-START_TEST(nodes_of_supports_have_a_part_of_the_force) {
+TEST(nodes_of_supports_have_a_part_of_the_force) {
   static const char *const hold[] = {
       "LEFT, 2, 2, -0.002\n", "LEFT, 1, 1, 0.05\n", "CORNER, 1, 1, 0.05\n", ""};
   for (int k = 0; k < 4; ++k) {
-    char cards[500];
-    snprintf(cards, sizeof cards,
-             "*FRICTION, CONTACT=C, LAW=TRESCA\n0.5\n"
-             "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=TANGENT\n"
-             "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.05\n"
-             "TOP, 2, 2, -0.01\n%s",
-             hold[k]);
-    job j = body_of_block(8, "GAP\n\"-0.005\"", cards);
-    dat t = job_table(&j, "GOALS", -1);
+    PRINTED(cards,
+            "*FRICTION, CONTACT=C, LAW=TRESCA\n0.5\n"
+            "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=TANGENT\n"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.05\n"
+            "TOP, 2, 2, -0.01\n%s",
+            hold[k]);
+    JOB j = body_of_block(8, "GAP\n\"-0.005\"", cards);
+    DAT t = job_table(&j, "GOALS", -1);
     const double off = -1.0 - dat_at(&t, 0, "corrected");
     const double band = dat_at(&t, 0, "band");
     ck_assert_msg(fabs(off) <= band, "row %d: %g off, band %g", k, off, band);
     ck_assert_int_eq(goal_has_verdict(&j, "T", "reliable"), k > 0);
     ck_assert(k == 0 ? band > 0.01 : band < 1e-12 && band > 1e-14);
-    dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Where a coarse mesh sticks, and a sum whose terms cancel. */
-START_TEST(zeros_are_not_exact) {
+TEST(zeros_are_not_exact) {
   job j = body_of_block(8, PLANE,
                         "*FRICTION, CONTACT=C, LAW=COULOMB\n5.\n"
                         "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n"
@@ -140,12 +126,10 @@ START_TEST(zeros_are_not_exact) {
   j = body_of_block(
       8, PLANE,
       "*GOAL, NAME=S, QUANTITY=STRESS, COMPONENT=XX, GROUP=BODY\n" CLAMPED);
-  dat t = job_table(&j, "GOALS", -1);
+  DAT t = job_table(&j, "GOALS", -1);
   ck_assert_double_le(fabs(dat_at(&t, 0, "corrected")), dat_at(&t, 0, "band"));
-  dat_free(&t);
   job_end(&j);
 }
-END_TEST
 
 /* ---- two materials ------------------------------------------------------- */
 
@@ -178,8 +162,7 @@ static job of_layers(layers l, const char *cards) {
             "*GOAL, NAME=P, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 1.\n" ENERGY
             "*STEP\n*STATIC\n%s*PRINT, GOALS\n*END STEP\n",
             1000.0 * l.ratio, l.expansion, l.type, l.type, cards);
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
@@ -192,7 +175,7 @@ typedef struct expected {
 /* At a free side stresses are infinite; the mean over TOP and that over RIGHT
  * have the same part of their errors, by the theorem of Betti. The energy under
  * the pressure is half of it times the mean over TOP: its part is near that. */
-START_TEST(materials_that_meet_at_a_free_side) {
+TEST(materials_that_meet_at_a_free_side) {
   static const struct {
     layers of;
     const char *cards;
@@ -220,20 +203,18 @@ START_TEST(materials_that_meet_at_a_free_side) {
        SIDES LOAD HEAT,
        {{2, -0.002234232, 0.95, 1.05, 1.3}, {3, 2.5251199, 0.54, 0.65, 0.8}}}};
   for (int k = 0; k < 5; ++k) {
-    job j = of_layers(rows[k].of, rows[k].cards);
+    JOB j = of_layers(rows[k].of, rows[k].cards);
     ck_assert(goal_has_verdict(&j, "S", "support_end"));
     for (int i = 0; i < 4 && rows[k].is[i].wide > 0.0; ++i) {
       const expected *e = &rows[k].is[i];
       goal_check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
     }
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Not where a plane of symmetry is normal to the interface, and within, but
  * where that turns. */
-START_TEST(materials_that_meet_smoothly) {
+TEST(materials_that_meet_smoothly) {
   job j = of_layers((layers){3.0, 0.0, "CPE3", NULL}, WALLS WAVE);
   ck_assert(goal_has_verdict(&j, "P", "reliable"));
   ck_assert(goal_has_verdict(&j, "E", "reliable"));
@@ -250,35 +231,30 @@ START_TEST(materials_that_meet_smoothly) {
   goal_check_row(&j, 5, 0.13734705, 0.85, 1.1, 0.4);
   job_end(&j);
 }
-END_TEST
 
 /* One temperature that two cards give is one: the goals of a body that expands
  * freely have the errors of the cold one. */
-START_TEST(temperatures_that_do_not_meet) {
+TEST(temperatures_that_do_not_meet) {
   static const char *const heat[] = {"",
                                      "*TEMPERATURE\nSOFT, 10.\nHARD, 10.\n"};
   double error[2], band[2];
   for (int k = 0; k < 2; ++k) {
-    char cards[200];
-    snprintf(cards, sizeof cards, "%s%s", SIDES WAVE, heat[k]);
-    job j = of_layers((layers){1.0, 1e-3, "CPE3", NULL}, cards);
-    dat t = job_table(&j, "GOALS", -1);
+    PRINTED(cards, "%s%s", SIDES WAVE, heat[k]);
+    JOB j = of_layers((layers){1.0, 1e-3, "CPE3", NULL}, cards);
+    DAT t = job_table(&j, "GOALS", -1);
     error[k] = dat_at(&t, 4, "error");
     band[k] = dat_at(&t, 4, "band");
-    dat_free(&t);
-    job_end(&j);
   }
   ck_assert_double_eq_tol(error[1], error[0], 1e-9 * fabs(error[0]));
   ck_assert_double_eq_tol(band[1], band[0], 1e-9 * fabs(band[0]));
 }
-END_TEST
 
 #define BOTH "*TEMPERATURE\nSOFT, 10.\nHARD, 10.\n"
 #define SLOPES "*TEMPERATURE\nSOFT, \"20*(1-x)\"\nHARD, \"5*x-7.5\"\n"
 
 /* Strains without stress count as what supports prescribe: they make the energy
  * of a mesh too large, loads too small, and one does no work on the other. */
-START_TEST(energies_by_loads_and_by_temperatures) {
+TEST(energies_by_loads_and_by_temperatures) {
   static const struct {
     layers of;
     const char *cards;
@@ -301,17 +277,15 @@ START_TEST(energies_by_loads_and_by_temperatures) {
        WALLS WAVE SLOPES,
        {5, 0.31954276, 0.9, 1, 0.3}}};
   for (int k = 0; k < 6; ++k) {
-    job j = of_layers(rows[k].of, rows[k].cards);
+    JOB j = of_layers(rows[k].of, rows[k].cards);
     const expected *e = &rows[k].is;
     goal_check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* What temperatures are within the elements more than their means: T(y) between
  * walls all round and T(r) of a cylinder between two have closed forms. */
-START_TEST(temperatures_that_vary_within_elements) {
+TEST(temperatures_that_vary_within_elements) {
   static const struct {
     layers of;
     const char *cards;
@@ -333,15 +307,13 @@ START_TEST(temperatures_that_vary_within_elements) {
        WALLS WAVE SLOPES,
        {{0, -0.0043053987, 0.9, 1.1, 0.5}, {2, 0.00088629567, 0.5, 1.5, 3.0}}}};
   for (int k = 0; k < 4; ++k) {
-    job j = of_layers(rows[k].of, rows[k].cards);
+    JOB j = of_layers(rows[k].of, rows[k].cards);
     for (int i = 0; i < 3 && rows[k].is[i].wide > 0.0; ++i) {
       const expected *e = &rows[k].is[i];
       goal_check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
     }
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A prism from z = 0 to 1 with an interface at y = 1/2, in the middle at
  * "height". */
@@ -364,14 +336,14 @@ END_TEST
   "Physical Surface(\"TOP\") = {b[3]};\n"                                      \
   "Physical Surface(\"ENDS\") = {1, 2, a[0], b[0]};\n"
 
-START_TEST(materials_that_meet_in_space) {
+TEST(materials_that_meet_in_space) {
   static const struct {
     double height;
     const char *hold;
     int sharp;
   } rows[] = {{0.62, "RIGHT, 1\n", 0}, {0.5, "", 1}, {0.67, "RIGHT, 1\n", 1}};
   for (int k = 0; k < 3; ++k) {
-    job j = job_begin("prism");
+    JOB j = job_begin("prism");
     job_write(&j, "prism.geo", PRISM, rows[k].height);
     job_write(&j, "prism.inp",
               "*MESH, FILE=prism.geo\n*MATERIAL, NAME=A\n*ELASTIC\n1000., 0.3\n"
@@ -382,13 +354,10 @@ START_TEST(materials_that_meet_in_space) {
               "*DSLOAD\nTOP, P, \"20*(1+cos(pi*x))\"\n*PRINT, GOALS\n"
               "*END STEP\n",
               rows[k].hold);
-    const int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    CK_EXIT(job_run(&j, ""), 0, j);
     ck_assert_int_eq(goal_has_verdict(&j, "E", "support_end"), rows[k].sharp);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* ---- pressures next to a plane of symmetry ------------------------------- */
 
@@ -405,24 +374,20 @@ static job of_peak(const char *words, const char *gap, const char *radius,
 
 /* The largest pressure is inside, and the zone grows to the plane at RIGHT: the
  * mean is the same part of it before and after. */
-START_TEST(peaks_do_not_jump_where_a_zone_reaches_a_plane) {
+TEST(peaks_do_not_jump_where_a_zone_reaches_a_plane) {
   static const char *const hold[] = {"TOP, 2, 2, -0.029\n",
                                      "TOP, 2, 2, -0.030\n"};
   double part[2];
   for (int k = 0; k < 2; ++k) {
-    job j =
+    JOB j =
         of_peak("rect 40 20 1 0.5 alternate", "0.1*(x-0.75)^2", "", hold[k]);
-    dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
+    DAT t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
     const double end = dat_at(&c, dat_row_near(&c, "x", 1.0), "pressure");
     ck_assert_int_eq(end > 0.0, k == 1);
     part[k] = dat_at(&t, 0, "corrected") / dat_max(&c, "pressure");
-    dat_free(&t);
-    dat_free(&c);
-    job_end(&j);
   }
   ck_assert_double_eq_tol(part[1], part[0], 0.003);
 }
-END_TEST
 
 /* On elements that no smaller mean fits, the largest pressure may be that of
  * its node. */
@@ -440,11 +405,10 @@ END_TEST
 
 /* In space the area is larger by what of it is behind each plane: as much as
  * the pressure there is of the largest. */
-START_TEST(radius_of_a_zone_that_planes_halve) {
+TEST(radius_of_a_zone_that_planes_halve) {
   static const char words[] = "box 8 8 3 1 1 0.5";
   static const char gap[] = "0.1*((x-0.7)^2+y^2)";
   static const char hold[] = "FRONT, 2\nTOP, 3, 3, -0.04\n";
-  char radius[40];
   job j = of_peak(words, gap, "", hold);
   dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
   const double value = dat_at(&t, 0, "value");
@@ -457,8 +421,8 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
     if (dat_at(&c, i, "y") < 0.001) at[1] = fmax(at[1], p);
   }
   ck_assert(at[0] > 0.05 * most && at[0] < 0.9 * most);
-  snprintf(
-      radius, sizeof radius, ", RADIUS=%.15g",
+  PRINTED(
+      radius, ", RADIUS=%.15g",
       0.5 * sqrt(area / M_PI * (1.0 + at[0] / most) * (1.0 + at[1] / most)));
   dat_free(&t);
   dat_free(&c);
@@ -469,7 +433,6 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
   dat_free(&t);
   job_end(&j);
 }
-END_TEST
 
 /* Of the border within the radius of a point a part is closed; or it is within
  * that of the node next to it, not of the point. At a node of the border there
@@ -490,7 +453,7 @@ END_TEST
 
 /* Next to an end of a line that is no plane of symmetry there is no peak, and
  * where nothing is closed no zone, nor a largest pressure. */
-START_TEST(pressures_at_ends_and_of_an_open_contact) {
+TEST(pressures_at_ends_and_of_an_open_contact) {
   static const char *const at[] = {"F1", "0., 0.", "F2", "2., 0.",
                                    "R1", "0., 1.", "R2", "2., 1."};
   char cards[700] = PLANE CONTACT
@@ -502,13 +465,11 @@ START_TEST(pressures_at_ends_and_of_an_open_contact) {
              "*GOAL, NAME=%s, QUANTITY=PRESSURE, CONTACT=%s\n%s\n", at[2 * k],
              k < 2 ? "C" : "ROOF", at[2 * k + 1]);
   strcat(cards, "*STEP\n*STATIC\n*BOUNDARY\nCORNER, 1\n*DSLOAD\nTOP, P, 1.\n");
-  job j = body_of("rect 4 2 2 1 alternate", cards);
+  JOB j = body_of("rect 4 2 2 1 alternate", cards);
   ck_assert(goal_has_verdict(&j, "OPEN", "no_zone"));
   for (int k = 0; k < 4; ++k)
     ck_assert_msg(goal_has_verdict(&j, at[2 * k], "no_peak"), "%s", at[2 * k]);
-  job_end(&j);
 }
-END_TEST
 
 UNIT_MAIN("goals_supports", energy_of_a_ring_that_is_pressed,
           nodes_of_supports_have_a_part_of_the_force, zeros_are_not_exact,

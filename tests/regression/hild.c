@@ -3,7 +3,6 @@
  * state on several meshes, friction and Poisson's ratios, the solutions beyond
  * the critical friction mu_c = sqrt((1 - nu)/nu), and the continuum at it.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -12,11 +11,9 @@ const int job_without_fields = 1;
 static const double P0 = 0.01, A = 0.002, C = -0.02;
 
 static job run_hild(double mu, double mu0, double nu, int n, int *code) {
-  char words[160];
   job j = job_begin("hild");
-  snprintf(words, sizeof words,
-           "-D MU=%.17g -D MU0=%.17g -D NU=%.17g -D N=%d --quiet", mu, mu0, nu,
-           n);
+  PRINTED(words, "-D MU=%.17g -D MU0=%.17g -D NU=%.17g -D N=%d --quiet", mu,
+          mu0, nu, n);
   *code = job_run_deck(&j, "input/hild_triangle/hild_triangle", words);
   return j;
 }
@@ -28,7 +25,7 @@ static double slip_amount(double mu, double mu0, double nu) {
 }
 
 static void compare_slip(const job *j, double mu, double mu0, double nu) {
-  dat c = job_table(j, "CONTACT", -1);
+  DAT c = job_table(j, "CONTACT", -1);
   double beta = slip_amount(mu, mu0, nu);
   double lambda = nu / ((1 + nu) * (1 - 2 * nu));
   for (int i = 0; i < c.n_row; ++i) {
@@ -39,10 +36,9 @@ static void compare_slip(const job *j, double mu, double mu0, double nu) {
     ck_assert_double_eq_tol(dat_at(&c, i, "traction_t"), mu * p, 1e-10 * P0);
     ck_assert_double_eq(dat_at(&c, i, "status"), 1.0);
   }
-  dat_free(&c);
 }
 
-START_TEST(closed_form_agrees_with_the_published_numbers) {
+TEST(closed_form_agrees_with_the_published_numbers) {
   static const double mu[] = {0.5, 1, 2, 2.59},
                       u[] = {-0.0904, -0.086, -0.064, -0.000682927},
                       N[] = {0.002, 0.0025, 0.005, 0.01219512};
@@ -52,9 +48,8 @@ START_TEST(closed_form_agrees_with_the_published_numbers) {
     ck_assert_double_eq_tol(P0 - beta * 0.1 / 0.88, N[k], 1e-8);
   }
 }
-END_TEST
 
-START_TEST(slipping_triangle_is_exact_on_every_mesh) {
+TEST(slipping_triangle_is_exact_on_every_mesh) {
   static const struct {
     double nu, mu, mu0;
   } scene[] = {{0.1, 0.5, 2.5},  {0.1, 1, 2.5},   {0.1, 2, 2.5},
@@ -63,17 +58,15 @@ START_TEST(slipping_triangle_is_exact_on_every_mesh) {
   for (size_t s = 0; s < sizeof scene / sizeof *scene; ++s)
     for (int n = 1; n <= 4; n += 3) {
       int code;
-      job j = run_hild(scene[s].mu, scene[s].mu0, scene[s].nu, n, &code);
+      JOB j = run_hild(scene[s].mu, scene[s].mu0, scene[s].nu, n, &code);
       ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
       compare_slip(&j, scene[s].mu, scene[s].mu0, scene[s].nu);
-      job_end(&j);
     }
 }
-END_TEST
 
 /* Lowest and highest u_t of the solutions in JOB.json; their count. */
 static int listed_solutions(const job *j, double *low, double *high) {
-  char *json = job_file(j, "json");
+  FREED char *json = job_file(j, "json");
   const char *at = strstr(json, "\"solutions\": [");
   int n = 0;
   ck_assert_ptr_nonnull(at);
@@ -82,18 +75,17 @@ static int listed_solutions(const job *j, double *low, double *high) {
     at = strstr(at, "\"u_t_highest\": ");
     high[n++] = atof(at + strlen("\"u_t_highest\": "));
   }
-  free(json);
   return n;
 }
 
 /* Last contact node of n equal segments. */
 static double last_x(int n) { return (n - 1.0) / n; }
 
-START_TEST(beyond_the_critical_friction_there_are_several) {
+TEST(beyond_the_critical_friction_there_are_several) {
   for (int n = 1; n <= 4; n += 3) {
     double low[8], high[8], beta = slip_amount(3.5, 3.55, 0.1);
     int code, found = 0;
-    job j = run_hild(3.5, 3.55, 0.1, n, &code);
+    JOB j = run_hild(3.5, 3.55, 0.1, n, &code);
     ck_assert_int_eq(code, 0);
     int count = listed_solutions(&j, low, high);
     ck_assert_int_eq(count, 3);
@@ -103,18 +95,16 @@ START_TEST(beyond_the_critical_friction_there_are_several) {
                fabs(high[i] - fmax(at_a, last)) < 1e-10;
     }
     ck_assert_int_eq(found, 1);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* alpha = 0.8 beta runs from -0.025 (A comes to rest) to 0.11 (no pressure):
  * u_t(A) = C - 0.8 alpha. */
-START_TEST(at_the_critical_friction_there_is_a_continuum) {
+TEST(at_the_critical_friction_there_is_a_continuum) {
   for (int n = 1; n <= 4; n += 3) {
     double low[8], high[8];
     int code;
-    job j = run_hild(3, 3, 0.1, n, &code);
+    JOB j = run_hild(3, 3, 0.1, n, &code);
     ck_assert_int_eq(code, 0);
     int count = listed_solutions(&j, low, high), rest = 0, open = 0;
     for (int i = 0; i < count; ++i) {
@@ -123,28 +113,19 @@ START_TEST(at_the_critical_friction_there_is_a_continuum) {
     }
     ck_assert_int_eq(rest, 1);
     ck_assert_int_eq(open, 1);
-    char *lst = job_file(&j, "lst");
+    FREED char *lst = job_file(&j, "lst");
     ck_assert_ptr_nonnull(strstr(lst, "a continuum"));
-    free(lst);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Too many nodes for all combinations: said before anything is written. */
-START_TEST(too_many_nodes_are_refused) {
+TEST(too_many_nodes_are_refused) {
   int code;
-  job j = run_hild(1, 2.5, 0.1, 16, &code);
+  JOB j = run_hild(1, 2.5, 0.1, 16, &code);
   ck_assert_int_eq(code, 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "CHECK=ALL: "));
   ck_assert_ptr_nonnull(strstr(j.errors, "the problem has 16 in 2-D"));
   ck_assert_ptr_nonnull(strstr(j.errors, "use CHECK=YES"));
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("hild", closed_form_agrees_with_the_published_numbers,
-          slipping_triangle_is_exact_on_every_mesh,
-          beyond_the_critical_friction_there_are_several,
-          at_the_critical_friction_there_is_a_continuum,
-          too_many_nodes_are_refused)
+UNIT_MAIN("hild")

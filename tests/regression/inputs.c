@@ -3,7 +3,6 @@
  * input, whatever its name; results stay in their folder; what is no plain file
  * is refused and not waited for.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/small_job.h"
 #include "support/unit.h"
@@ -53,8 +52,7 @@ static job begin(void) {
 }
 
 static void shell(const job *j, const char *command) {
-  char line[2 * TEXT];
-  snprintf(line, sizeof line, "cd '%s' && %s", j->dir, command);
+  PRINTED(line, "cd '%s' && %s", j->dir, command);
   ck_assert_int_eq(system(line), 0);
 }
 
@@ -72,10 +70,9 @@ static void still_there(const job *j, const char *name, const char *content) {
   char *suffix = strrchr(base, '.');
   *suffix = '\0';
   snprintf(other.name, sizeof other.name, "%s", base);
-  char *text = job_file(&other, suffix + 1);
+  FREED char *text = job_file(&other, suffix + 1);
   ck_assert_msg(text != NULL && strcmp(text, content) == 0, "%s is now %.80s",
                 name, text == NULL ? "gone" : text);
-  free(text);
 }
 
 /* Refused before anything is touched: the input and a result of before stay. */
@@ -89,7 +86,7 @@ static void refused(job *j, int reader, const char *name) {
   still_there(j, "job.sta", "of before\n");
 }
 
-START_TEST(results_named_like_inputs_are_refused) {
+TEST(results_named_like_inputs_are_refused) {
   static const char *const names[] = {
       "job.lst",        "job.dat",      "job.cvg",
       "job.h5",         "job.h5.tmp",   "job.xdmf",
@@ -98,17 +95,15 @@ START_TEST(results_named_like_inputs_are_refused) {
       "job.rst.old.h5", "job.rst.inc",  "job_condensed_00007.h5"};
   for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
     int reader = (int)k % READERS;
-    job j = begin();
+    JOB j = begin();
     write_deck(&j, reader, names[k]);
     job_write(&j, names[k], "%s", readers[reader].content);
     refused(&j, reader, names[k]);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Another name of the file that a result would replace. */
-START_TEST(inputs_are_known_by_what_they_are) {
+TEST(inputs_are_known_by_what_they_are) {
   static const char *const ways[][2] = {
       {"ln data.txt job.h5", "data.txt"},
       {"ln -s data.txt job.h5", "data.txt"},
@@ -118,23 +113,21 @@ START_TEST(inputs_are_known_by_what_they_are) {
        "sub/../job.h5"}};
   for (size_t k = 0; k < sizeof ways / sizeof *ways; ++k) {
     int reader = (int)k % READERS;
-    job j = begin();
+    JOB j = begin();
     job_write(&j, "data.txt", "%s", readers[reader].content);
     shell(&j, ways[k][0]);
     write_deck(&j, reader, ways[k][1]);
     refused(&j, reader, "data.txt");
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Of a .geo the files too that it includes: as the deck's own, they are not
  * overwritten and a restart knows them. */
-START_TEST(what_a_geometry_includes_is_an_input) {
+TEST(what_a_geometry_includes_is_an_input) {
   static const char *const ways[] = {
       PLATE "If (0)\nv() = ShapeFromFile( \"job.lst\" );\nEndIf",
       "Include \"job.lst\";"};
-  job j = begin();
+  JOB j = begin();
   job_write(&j, "job.inp", "%s",
             "*MESH, FILE=one.geo\n" BODY STEP "*RESTART\n*END STEP\n");
   job_write(&j, "job.lst", "%s", PLATE);
@@ -153,12 +146,10 @@ START_TEST(what_a_geometry_includes_is_an_input) {
   ck_assert_int_eq(job_run(&j, "--restart"), 2);
   ck_assert_msg(strstr(j.errors, "FILE=part.geo: has other contents") != NULL,
                 "%s", j.errors);
-  job_end(&j);
 }
-END_TEST
 
 /* Links to a file of another folder, of each name that is written. */
-START_TEST(results_stay_in_their_folder) {
+TEST(results_stay_in_their_folder) {
   static const char *const names[] = {
       "job.lst",    "job.sta",        "job.dat",
       "job.cvg",    "job.h5",         "job.xdmf",
@@ -168,7 +159,7 @@ START_TEST(results_stay_in_their_folder) {
       "ln -s away/%s %s", "echo precious > away/%s; ln -s away/%s %s",
       "echo precious > away/%s; ln away/%s %s"};
   for (int way = 0; way < 3; ++way) {
-    job j = begin();
+    JOB j = begin();
     char command[TEXT];
     write_deck(&j, 2, "one.msh");
     shell(&j,
@@ -179,21 +170,18 @@ START_TEST(results_stay_in_their_folder) {
                names[k]);
       shell(&j, command);
     }
-    int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    CK_EXIT(job_run(&j, ""), 0, j);
     shell(&j, way == 0 ? "test -z \"$(ls away)\""
                        : "test $(cat away/* | sort -u) = precious");
     shell(&j,
           "for s in lst sta dat cvg h5 xdmf json rst.h5; do "
           "test -s job.$s && ! test -L job.$s || exit 1; done");
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Those of a longer run before are gone, at a restart those after it, and all
  * where there shall be none. */
-START_TEST(condensed_problems_are_of_one_run) {
+TEST(condensed_problems_are_of_one_run) {
   static const char make[] =
       "touch block_condensed_00009.h5 block_condensed_00042.h5.tmp "
       "block_condensed_x.h5 block_condensed_7.h5.old; ";
@@ -201,7 +189,7 @@ START_TEST(condensed_problems_are_of_one_run) {
       "test \"$(ls | grep condensed | xargs)\" = \"$(echo "
       "block_condensed_0000[1-8].h5 block_condensed_7.h5.old "
       "block_condensed_x.h5)\"";
-  job j = small_flat(0.5, "*OUTPUT, CONDENSED=FCLIB\n*RESTART\n", "AUTO");
+  JOB j = small_flat(0.5, "*OUTPUT, CONDENSED=FCLIB\n*RESTART\n", "AUTO");
   for (int again = 0; again < 2; ++again) {
     shell(&j, make);
     ck_assert_msg(job_run(&j, again ? "--restart" : "") == 0, "%s", j.errors);
@@ -210,19 +198,15 @@ START_TEST(condensed_problems_are_of_one_run) {
   shell(&j, "sed -i 's/, CONDENSED=FCLIB/, HDF5=NO/' block.inp");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   shell(&j, "test -z \"$(ls | grep 'condensed_0')\"");
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(stop_file_of_others_stays) {
-  job j = begin();
+TEST(stop_file_of_others_stays) {
+  JOB j = begin();
   write_deck(&j, 3, "job.stop");
   job_write(&j, "job.stop", "%s", triangle);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   still_there(&j, "job.stop", triangle);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- what is no file ----------------------------------------------------- */
 
@@ -232,11 +216,11 @@ static void refused_kind(job *j, const char *what, const char *words) {
                 "%s: exit %d: %s", what, code, j->errors);
 }
 
-START_TEST(no_plain_file_is_no_input) {
+TEST(no_plain_file_is_no_input) {
   static const char *const kinds[] = {
       "mkfifo odd.msh", "ln -s /dev/zero odd.msh", "mkdir odd.msh"};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k) {
-    job j = begin();
+    JOB j = begin();
     shell(&j, kinds[k]);
     for (int reader = 0; reader < READERS; ++reader) {
       write_deck(&j, reader, "odd.msh");
@@ -247,27 +231,25 @@ START_TEST(no_plain_file_is_no_input) {
     refused_kind(&j, kinds[k], "--restart");
     shell(&j, "rm job.inp; mv job.rst.h5 job.inp");
     refused_kind(&j, kinds[k], "");
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Nor is what is protected; the results of before stay. */
-START_TEST(no_plain_file_is_no_result) {
+TEST(no_plain_file_is_no_result) {
   static const char *const names[] = {"lst",    "h5",       "json", "dat",
                                       "h5.tmp", "json.tmp", "lock"};
   static const char *const ways[] = {"mkdir", "mkfifo",
                                      "install -m 444 job.inp"};
   for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
     for (int way = 0; way < (k == 6 ? 2 : 3); ++way) {
-      job j = begin();
-      char command[TEXT], name[16];
+      JOB j = begin();
+      char name[16];
       write_deck(&j, 2, "one.msh");
       snprintf(name, sizeof name, "job.%s", names[k]);
-      snprintf(command, sizeof command,
-               "for r in lst sta cvg json; do echo old > job.$r; done; "
-               "rm -f %s; %s %s",
-               name, ways[way], name);
+      PRINTED(command,
+              "for r in lst sta cvg json; do echo old > job.$r; done; "
+              "rm -f %s; %s %s",
+              name, ways[way], name);
       shell(&j, command);
       int code = job_run(&j, "");
       ck_assert_msg(code == 4 && strstr(j.errors, name) != NULL,
@@ -278,13 +260,7 @@ START_TEST(no_plain_file_is_no_result) {
         snprintf(name, sizeof name, "job.%s", result);
         if (strcmp(result, names[k]) != 0) still_there(&j, name, "old\n");
       }
-      job_end(&j);
     }
 }
-END_TEST
 
-UNIT_MAIN("inputs", results_named_like_inputs_are_refused,
-          inputs_are_known_by_what_they_are,
-          what_a_geometry_includes_is_an_input, results_stay_in_their_folder,
-          condensed_problems_are_of_one_run, stop_file_of_others_stays,
-          no_plain_file_is_no_input, no_plain_file_is_no_result)
+UNIT_MAIN("inputs")

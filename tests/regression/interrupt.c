@@ -4,7 +4,6 @@
  * name. A run of many increments is watched through its JOB.sta, so that
  * nothing depends on time.
  */
-#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/kept_mesh.h"
@@ -22,28 +21,21 @@ enum { MANY = 200000, SOME = 5 };
 
 /* A block under friction in so many increments. */
 static job block(int increments) {
-  job j = job_begin("block");
-  job_copy(&j, "input/greco/greco.geo");
-  job_write(&j, "block.inp",
-            "*PARAMETER\nN = 4\n*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n*QUASISTATIC\n"
-            "%.17g, 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
-            "LEFT, P, 150.\n*PRINT, TOTALS\n*OUTPUT, FREQUENCY=0\n*END STEP\n",
-            1.0 / increments);
+  job j = job_with(
+      "block", "input/greco/greco.geo",
+      "*PARAMETER\nN = 4\n*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n"
+      "*ELASTIC\n130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n*QUASISTATIC\n"
+      "%.17g, 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
+      "LEFT, P, 150.\n*PRINT, TOTALS\n*OUTPUT, FREQUENCY=0\n*END STEP\n",
+      1.0 / increments);
   return j;
 }
 
-static const char *program(void) {
-  const char *p = getenv("PROTIS");
-  return p == NULL ? "build/release/protis" : p;
-}
-
 static void into(const job *j, const char *file, int fd) {
-  char path[200];
-  snprintf(path, sizeof path, "%s/%s", j->dir, file);
+  PRINTED(path, "%s/%s", j->dir, file);
   int to = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (to < 0 || dup2(to, fd) < 0) _exit(99);
 }
@@ -64,8 +56,7 @@ static size_t n_ignored;
 
 /* Start the job; file_limit: bytes, 0 none. */
 static pid_t start(const job *j, rlim_t file_limit) {
-  char deck[200];
-  snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
+  PRINTED(deck, "%s/%s", j->dir, j->name);
   pid_t pid = fork();
   ck_assert_int_ge(pid, 0);
   if (pid > 0) return pid;
@@ -76,7 +67,7 @@ static pid_t start(const job *j, rlim_t file_limit) {
   for (size_t k = 0; k < sizeof requests / sizeof *requests; ++k)
     signal(requests[k].number, k < n_ignored ? SIG_IGN : SIG_DFL);
   kept_mesh_preload("");
-  execl(program(), program(), deck, "--no-timing", (char *)NULL);
+  execl(job_program(), job_program(), deck, "--no-timing", (char *)NULL);
   _exit(99);
 }
 
@@ -89,7 +80,7 @@ static int finish(pid_t pid) {
 
 /* Increments in JOB.sta; *last is the number of the last one. */
 static int lines_of(const job *j, int *last) {
-  char *sta = job_file(j, "sta");
+  FREED char *sta = job_file(j, "sta");
   int n = 0;
   *last = 0;
   for (char *p = sta; p != NULL && (p = strchr(p, '\n')) != NULL && p[1];) {
@@ -98,7 +89,6 @@ static int lines_of(const job *j, int *last) {
     ++n;
     sscanf(p, "%*d %d", last);
   }
-  free(sta);
   return n;
 }
 
@@ -112,8 +102,7 @@ static void wait_for(const job *j, pid_t pid, int lines) {
 
 /* So that the next run is not taken for this one. */
 static void remove_sta(const job *j) {
-  char path[200];
-  snprintf(path, sizeof path, "%s/%s.sta", j->dir, j->name);
+  PRINTED(path, "%s/%s.sta", j->dir, j->name);
   ck_assert_int_eq(unlink(path), 0);
 }
 
@@ -125,9 +114,8 @@ static char *errors_of(const job *j) {
 
 /* Rows of /history/time that were reached. */
 static int rows_of(const job *j) {
-  char path[200];
   int n = 0;
-  snprintf(path, sizeof path, "%s/%s.h5", j->dir, j->name);
+  PRINTED(path, "%s/%s.h5", j->dir, j->name);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   ck_assert_int_ge(file, 0);
   hid_t set = H5Dopen2(file, "/history/time", H5P_DEFAULT);
@@ -148,10 +136,9 @@ static void check_files(const job *j) {
   ck_assert_int_eq(rows_of(j), n);
   static const char *const texts[] = {"lst", "sta", "cvg", "dat"};
   for (size_t k = 0; k < sizeof texts / sizeof *texts; ++k) {
-    char *text = job_file(j, texts[k]);
+    FREED char *text = job_file(j, texts[k]);
     ck_assert_ptr_nonnull(text);
     ck_assert_int_eq(text[strlen(text) - 1], '\n');
-    free(text);
   }
   char *tables = job_file(j, "dat"), *at = strrchr(tables, '#'), block_of[60];
   while (at > tables && strncmp(at, "# step", 6) != 0) --at;
@@ -164,38 +151,34 @@ static void check_told(const job *j, const char *by, int code) {
   char wanted[120];
   int last;
   lines_of(j, &last);
-  char *errors = errors_of(j), *json = job_file(j, "json");
+  FREED char *errors = errors_of(j), *json = job_file(j, "json");
   snprintf(wanted, sizeof wanted, "after step 1, increment %d, time", last);
   ck_assert_msg(strstr(errors, by) != NULL && strstr(errors, wanted) != NULL,
                 "%s; wanted %s, %s", errors, by, wanted);
   snprintf(wanted, sizeof wanted, "\"code\": %d", code);
   ck_assert_msg(strstr(json, wanted) != NULL, "%s", json);
   ck_assert(job_has(j, "rst.h5"));
-  free(errors);
-  free(json);
 }
 
 static void signal_ends(int signal_no, const char *name, int code) {
-  job j = block(MANY);
+  JOB j = block(MANY);
   pid_t pid = start(&j, 0);
   wait_for(&j, pid, SOME);
   kill(pid, signal_no);
   ck_assert_int_eq(finish(pid), code);
   check_told(&j, name, code);
   check_files(&j);
-  job_end(&j);
 }
 
-START_TEST(signals_end_after_an_increment) {
+TEST(signals_end_after_an_increment) {
   for (size_t k = 0; k < sizeof requests / sizeof *requests; ++k)
     signal_ends(requests[k].number, requests[k].told, requests[k].code);
 }
-END_TEST
 
 /* SIGXCPU comes every second, SIGTERM follows a hangup: the first counts, the
  * files are closed. */
-START_TEST(signals_come_together) {
-  job j = block(MANY);
+TEST(signals_come_together) {
+  JOB j = block(MANY);
   pid_t pid = start(&j, 0);
   wait_for(&j, pid, SOME);
   kill(pid, SIGXCPU);
@@ -205,12 +188,10 @@ START_TEST(signals_come_together) {
   int code = finish(pid);
   ck_assert_msg(code == 152 || code == 129 || code == 143, "exit %d", code);
   ck_assert(job_has(&j, "json") && job_has(&j, "rst.h5"));
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(ignored_signals_stay_ignored) {
-  job j = block(MANY);
+TEST(ignored_signals_stay_ignored) {
+  JOB j = block(MANY);
   n_ignored = 4;
   pid_t pid = start(&j, 0);
   n_ignored = 0;
@@ -220,12 +201,10 @@ START_TEST(ignored_signals_stay_ignored) {
   wait_for(&j, pid, before + SOME);
   kill(pid, SIGTERM);
   ck_assert_int_eq(finish(pid), 143);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(file_ends_after_an_increment) {
-  job j = block(MANY);
+TEST(file_ends_after_an_increment) {
+  JOB j = block(MANY);
   pid_t pid = start(&j, 0);
   wait_for(&j, pid, SOME);
   job_write(&j, "block.stop", "\n");
@@ -233,13 +212,11 @@ START_TEST(file_ends_after_an_increment) {
   check_told(&j, "block.stop", 130);
   check_files(&j);
   ck_assert(!job_has(&j, "stop"));
-  job_end(&j);
 }
-END_TEST
 
 /* One that is there does not count and stays; it counts when it is touched. */
-START_TEST(earlier_file_stays) {
-  job j = block(MANY);
+TEST(earlier_file_stays) {
+  JOB j = block(MANY);
   job_write(&j, "block.stop", "notes\n");
   pid_t pid = start(&j, 0);
   wait_for(&j, pid, SOME);
@@ -247,16 +224,13 @@ START_TEST(earlier_file_stays) {
   job_write(&j, "block.stop", "more notes\n");
   ck_assert_int_eq(finish(pid), 130);
   check_told(&j, "block.stop", 130);
-  char *stop = job_file(&j, "stop");
+  FREED char *stop = job_file(&j, "stop");
   ck_assert_str_eq(stop, "more notes\n");
-  free(stop);
-  job_end(&j);
 }
-END_TEST
 
 /* Both signals reach the process at once: it ends without closing the files. */
-START_TEST(second_signal_ends_at_once) {
-  job j = block(MANY);
+TEST(second_signal_ends_at_once) {
+  JOB j = block(MANY);
   pid_t pid = start(&j, 0);
   wait_for(&j, pid, SOME);
   kill(pid, SIGSTOP);
@@ -270,26 +244,21 @@ START_TEST(second_signal_ends_at_once) {
   ck_assert_str_eq(errors, "");
   ck_assert_int_ge(rows_of(&j), lines_of(&j, &last));
   free(errors);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(file_size_limit_is_a_failed_write) {
-  job j = block(MANY);
+TEST(file_size_limit_is_a_failed_write) {
+  JOB j = block(MANY);
   pid_t pid = start(&j, 20000);
   ck_assert_int_eq(finish(pid), 4);
-  char *errors = errors_of(&j);
+  FREED char *errors = errors_of(&j);
   ck_assert_msg(strstr(errors, "block.") != NULL, "%s", errors);
-  free(errors);
-  job_end(&j);
 }
-END_TEST
 
 /* The second pass of TARGET= has larger files: it fails, in which increment or
  * file whatever, and leaves the results of the first, which are removed where
  * it ends. */
-START_TEST(a_pass_that_fails_leaves_the_one_before) {
-  job j = block(5);
+TEST(a_pass_that_fails_leaves_the_one_before) {
+  JOB j = block(5);
   char *deck = job_file(&j, "inp"), *at = strstr(deck, "*PRINT, TOTALS");
   ck_assert_ptr_nonnull(at);
   *at = '\0';
@@ -298,29 +267,24 @@ START_TEST(a_pass_that_fails_leaves_the_one_before) {
             deck);
   free(deck);
   ck_assert_int_eq(finish(start(&j, 100000)), 4);
-  char *errors = errors_of(&j), *json = job_file(&j, "pass/block.json");
+  FREED char *errors = errors_of(&j), *json = job_file(&j, "pass/block.json");
   ck_assert_msg(strstr(errors, "the files of pass 1 are in ") != NULL &&
                     strstr(errors, "/block.pass") != NULL,
                 "%s", errors);
   ck_assert_ptr_nonnull(json);
   ck_assert_ptr_nonnull(strstr(json, "\"code\": 0"));
   ck_assert(job_has(&j, "pass/block.h5") && job_has(&j, "pass/block.lst"));
-  free(errors);
-  free(json);
   ck_assert_int_eq(job_run(&j, ""), 0);
   ck_assert(job_has(&j, "h5") && !job_has(&j, "pass"));
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(second_job_of_the_name_is_refused) {
-  job j = block(MANY);
-  char owner[40];
+TEST(second_job_of_the_name_is_refused) {
+  JOB j = block(MANY);
   pid_t pid = start(&j, 0);
   wait_for(&j, pid, SOME);
   ck_assert_int_eq(job_run(&j, ""), 4);
   ck_assert_ptr_nonnull(strstr(j.errors, "block.lock"));
-  snprintf(owner, sizeof owner, "process %d", (int)pid);
+  PRINTED(owner, "process %d", (int)pid);
   ck_assert_ptr_nonnull(strstr(j.errors, owner));
   ck_assert_int_eq(job_run(&j, "--check"), 0); /* writes nothing */
   wait_for(&j, pid, SOME + 1);
@@ -336,19 +300,17 @@ START_TEST(second_job_of_the_name_is_refused) {
   ck_assert_int_eq(finish(pid), 143);
   lock = job_file(&j, "lock");
   ck_assert_ptr_null(lock);
-  job_end(&j);
 }
-END_TEST
 
 /* Neither the lock of the job nor one of HDF5 ends a run. The sanitisers must
  * be the first that is loaded. */
-START_TEST(file_system_without_locks_is_no_matter) {
+TEST(file_system_without_locks_is_no_matter) {
 #ifndef __SANITIZE_ADDRESS__
   static const int errors[] = {ENOLCK, EOPNOTSUPP, ENOSYS, EINVAL};
   char number[20], seen[200];
   job_preload("nolocks");
   for (size_t k = 0; k < sizeof errors / sizeof *errors; ++k) {
-    job j = block(3);
+    JOB j = block(3);
     snprintf(number, sizeof number, "%d", errors[k]);
     snprintf(seen, sizeof seen, "%s/locks.seen", j.dir);
     setenv("NOLOCKS", number, 1);
@@ -357,32 +319,26 @@ START_TEST(file_system_without_locks_is_no_matter) {
     ck_assert_msg(access(seen, F_OK) == 0, "no lock was asked for");
     ck_assert(job_has(&j, "h5") && !job_has(&j, "lock"));
     ck_assert_msg(job_run(&j, "--restart") == 0, "%s", j.errors);
-    job_end(&j);
   }
   unsetenv("LD_PRELOAD");
 #endif
 }
-END_TEST
 
-START_TEST(other_file_of_that_name_stays) {
-  job j = block(2);
+TEST(other_file_of_that_name_stays) {
+  JOB j = block(2);
   job_write(&j, "block.lock", "my notes\n");
   ck_assert_int_eq(job_run(&j, ""), 4);
   ck_assert_ptr_nonnull(strstr(j.errors, "block.lock is no lock"));
-  char *lock = job_file(&j, "lock");
+  FREED char *lock = job_file(&j, "lock");
   ck_assert_str_eq(lock, "my notes\n");
-  free(lock);
-  job_end(&j);
 }
-END_TEST
 
 /* Bits of the standard streams that are closed, once for gmsh too. */
 START_TEST(closed_streams_are_no_matter) {
   static const unsigned closed[] = {7, 3, 5, 6};
   for (size_t k = 0; k < sizeof closed / sizeof *closed; ++k) {
-    job j = block(2);
-    char deck[200];
-    snprintf(deck, sizeof deck, "%s/%s", j.dir, j.name);
+    JOB j = block(2);
+    PRINTED(deck, "%s/%s", j.dir, j.name);
     pid_t pid = fork();
     ck_assert_int_ge(pid, 0);
     if (pid == 0) {
@@ -393,29 +349,25 @@ START_TEST(closed_streams_are_no_matter) {
       _exit(99);
     }
     ck_assert_int_eq(finish(pid), 0);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* What is printed to a closed stream is lost. */
-START_TEST(closed_output_is_a_failed_write) {
+TEST(closed_output_is_a_failed_write) {
   pid_t pid = fork();
   ck_assert_int_ge(pid, 0);
   if (pid == 0) {
     close(STDOUT_FILENO);
-    execl(program(), program(), "--list", "solvers", (char *)NULL);
+    execl(job_program(), job_program(), "--list", "solvers", (char *)NULL);
     _exit(99);
   }
   ck_assert_int_eq(finish(pid), 4);
 }
-END_TEST
 
 /* With a limit and a minute. */
 static int finish_below(const job *j, int what, struct rlimit most,
                         const char *threads) {
-  char deck[200];
-  snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
+  PRINTED(deck, "%s/%s", j->dir, j->name);
   pid_t pid = fork();
   ck_assert_int_ge(pid, 0);
   if (pid > 0) return finish(pid);
@@ -424,7 +376,7 @@ static int finish_below(const job *j, int what, struct rlimit most,
   signal(SIGALRM, SIG_DFL);
   alarm(UNIT_SECONDS / 10);
   setrlimit(what, &most);
-  execl(program(), program(), deck, "--threads", threads, (char *)NULL);
+  execl(job_program(), job_program(), deck, "--threads", threads, (char *)NULL);
   _exit(99);
 }
 
@@ -435,41 +387,34 @@ static int finish_within(const job *j, rlim_t bytes, const char *threads) {
 
 /* Of the CPU time the child that meshes has as much as the run: at the soft
  * limit it is ended by SIGXCPU, at the hard one by SIGKILL. */
-START_TEST(limit_of_time_counts_while_gmsh_works) {
-  job j = block(2);
+TEST(limit_of_time_counts_while_gmsh_works) {
+  JOB j = block(2);
   job_write(
       &j, "greco.geo",
       "DefineConstant[ N = 1 ];\nFor i In {1:100000000}\n  x = N;\nEndFor\n");
   for (rlim_t hard = 1; hard <= 2; ++hard) {
     const int code =
         finish_below(&j, RLIMIT_CPU, (struct rlimit){1, hard}, "1");
-    char *errors = errors_of(&j);
+    FREED char *errors = errors_of(&j);
     ck_assert_msg(code == 152, "exit %d: %s", code, errors);
     ck_assert_ptr_nonnull(strstr(errors, "limit of CPU time"));
-    free(errors);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* Too few addresses for the linear algebra: told, and not waited for. */
-START_TEST(few_addresses_are_told) {
-  job j = block(2);
+TEST(few_addresses_are_told) {
+  JOB j = block(2);
   ck_assert_int_eq(finish_within(&j, (rlim_t)150 << 20, "1"), 5);
-  char *errors = errors_of(&j);
+  FREED char *errors = errors_of(&j);
   ck_assert_ptr_nonnull(strstr(errors, "ulimit -v"));
-  free(errors);
-  job_end(&j);
 }
-END_TEST
 
 /* Enough to start, not enough for a body of 14,641 nodes, or just enough. */
-START_TEST(few_addresses_are_not_waited_for) {
+TEST(few_addresses_are_not_waited_for) {
   const mesh_change as_it_is = {.map = {NULL}};
   int *number = NULL, refused = 0;
-  char path[100];
-  job j = job_begin("block");
-  snprintf(path, sizeof path, "%s/block.msh", j.dir);
+  JOB j = job_begin("block");
+  PRINTED(path, "%s/block.msh", j.dir);
   FILE *f = fopen(path, "w");
   ck_assert_ptr_nonnull(f);
   ck_assert_int_eq(scene_mesh_write(f, "rect 120 120 1 1", &as_it_is, &number),
@@ -486,20 +431,17 @@ START_TEST(few_addresses_are_not_waited_for) {
             "*OUTPUT, HDF5=NO\n*END STEP\n");
   for (rlim_t kb = 168000; kb < 200000; kb += 2000) {
     const int code = finish_within(&j, kb << 10, "1");
-    char *errors = errors_of(&j);
+    FREED char *errors = errors_of(&j);
     ck_assert_msg(code == 0 || code == 5, "%d kB: exit %d: %s", (int)kb, code,
                   errors);
-    free(errors);
     refused += code == 5;
   }
   ck_assert_int_gt(refused, 0);
-  job_end(&j);
 }
-END_TEST
 
 /* Threads of the linear algebra without room for their buffers: one runs. */
-START_TEST(few_addresses_leave_one_thread) {
-  job j = job_begin("square");
+TEST(few_addresses_leave_one_thread) {
+  JOB j = job_begin("square");
   job_write(
       &j, "square.msh",
       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n"
@@ -512,19 +454,15 @@ START_TEST(few_addresses_leave_one_thread) {
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
             "*BOUNDARY\nFOOT, 1, 2\n*DLOAD\nBODY, BY, -1.\n*END STEP\n");
   int code = finish_within(&j, (rlim_t)240 << 20, "2");
-  char *errors = errors_of(&j);
+  FREED char *errors = errors_of(&j);
   ck_assert_msg(code == 0, "exit %d: %s", code, errors);
   ck_assert_ptr_nonnull(strstr(errors, "P5020"));
-  free(errors);
-  job_end(&j);
 }
-END_TEST
 
 /* An option, or a deck behind "--" or with its folder. */
-START_TEST(deck_may_begin_with_a_dash) {
-  job j = block(2);
-  char line[400];
-  snprintf(line, sizeof line, "mv '%s/block.inp' '%s/-x.inp'", j.dir, j.dir);
+TEST(deck_may_begin_with_a_dash) {
+  JOB j = block(2);
+  PRINTED(line, "mv '%s/block.inp' '%s/-x.inp'", j.dir, j.dir);
   ck_assert_int_eq(system(line), 0);
   snprintf(j.name, sizeof j.name, "-x.inp");
   ck_assert_int_eq(job_run(&j, ""), 2);
@@ -533,18 +471,6 @@ START_TEST(deck_may_begin_with_a_dash) {
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   snprintf(j.name, sizeof j.name, "-x");
   ck_assert(job_has(&j, "lst") && job_has(&j, "h5"));
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("interrupt", file_system_without_locks_is_no_matter,
-          deck_may_begin_with_a_dash, few_addresses_are_told,
-          few_addresses_are_not_waited_for, few_addresses_leave_one_thread,
-          limit_of_time_counts_while_gmsh_works,
-          closed_output_is_a_failed_write, closed_streams_are_no_matter,
-          signals_end_after_an_increment, signals_come_together,
-          ignored_signals_stay_ignored, earlier_file_stays,
-          file_ends_after_an_increment, second_signal_ends_at_once,
-          file_size_limit_is_a_failed_write,
-          a_pass_that_fails_leaves_the_one_before,
-          second_job_of_the_name_is_refused, other_file_of_that_name_stays)
+UNIT_MAIN("interrupt")

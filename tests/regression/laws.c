@@ -3,7 +3,6 @@
  * a square in homogeneous stress, exact on its mesh, so that errors are
  * those of time; E = 1000, nu = 0.3 and times near 2 unless said otherwise.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -32,20 +31,18 @@ static job run_scene(const scene *s, int expected) {
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n%s%s"
             "*STEP\n%s" TABLES "*END STEP\n",
             s->elastic, s->law, s->section, s->model, first, s->visco);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == expected, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, "--no-timing"), expected, j);
   return j;
 }
 
 /* Table number k of the elements: all have that value. */
 static void all_have(const job *j, int k, const char *column, double expected,
                      double tolerance) {
-  dat d = job_table(j, "ELEMENTS", k);
+  DAT d = job_table(j, "ELEMENTS", k);
   for (int i = 0; i < d.n_row; ++i)
     ck_assert_msg(fabs(dat_at(&d, i, column) - expected) <= tolerance,
                   "%s of table %d: %.12g, expected %.12g to %g", column, k,
                   dat_at(&d, i, column), expected, tolerance);
-  dat_free(&d);
 }
 
 #define SOFT "1000., 0.3"
@@ -169,17 +166,14 @@ static const closed_form forms[] = {
 };
 /* clang-format on */
 
-START_TEST(closed_forms) {
+TESTS(closed_forms, (int)(sizeof forms / sizeof *forms)) {
   const closed_form *f = &forms[_i];
-  job j = run_scene(&f->s, 0);
+  JOB j = run_scene(&f->s, 0);
   for (int i = 0; i < f->n; ++i)
     all_have(&j, f->k[i], f->column, f->value[i], f->tolerance);
-  dat e = job_table(&j, "ENERGY", -1);
-  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
-  dat_free(&e);
-  job_end(&j);
+  ck_assert_double_le(
+      fabs(job_value(&j, "ENERGY", -1, "energy_defect_relative")), 1e-10);
 }
-END_TEST
 
 /* Simpson's rule for the reduced time: the integral of 10^(c1 (T - T0)/(c2 + T
  * - T0)) while T rises from 20 to 50 in 2 s. */
@@ -197,7 +191,7 @@ static double reduced_time(void) {
 }
 
 /* A held strain while the clock runs faster and faster: exp(-xi/tau). */
-START_TEST(reduced_time_of_a_body_that_warms_up) {
+TEST(reduced_time_of_a_body_that_warms_up) {
   scene s = {SOFT,
              "*INELASTIC, LAW=MAXWELL\n1.E6\n*TRS, DEFINITION=WLF\n"
              "20., 17.44, 51.6\n",
@@ -206,17 +200,15 @@ START_TEST(reduced_time_of_a_body_that_warms_up) {
              HELD,
              "*VISCO, INTEGRATOR=MIDPOINT\n0.005, 2.\n"
              "*TEMPERATURE\nBODY, 50.\n"};
-  job j = run_scene(&s, 0);
+  JOB j = run_scene(&s, 0);
   all_have(&j, -1, "stress_yy", exp(-reduced_time() / 1e6), 1e-5);
-  job_end(&j);
 }
-END_TEST
 
 /* The stress falls from 100 to 80 at t = 2, m = -1/2, n = 5, A = 1e-15: time
  * hardening goes on with the rate of t = 2, strain hardening with that of the
  * time at which 80 would have led to the same strain, 2 (100/80)^(5/(1 + m)).
  */
-START_TEST(hardening_after_a_change_of_stress) {
+TEST(hardening_after_a_change_of_stress) {
   static const char *const law[] = {"TIME", "STRAIN"};
   const double one = 1e-5, two = 1e-5 * pow(0.8, 5);
   const double first = 2 * one * sqrt(2), at = 2 * pow(1.25, 10);
@@ -224,8 +216,7 @@ START_TEST(hardening_after_a_change_of_stress) {
                              2 * two * sqrt(at + 2)};
   ck_assert_double_eq_tol(2 * two * sqrt(at), first, 1e-15);
   for (int k = 0; k < 2; ++k) {
-    char cards[80];
-    snprintf(cards, sizeof cards, "*CREEP, LAW=%s\n1.E-15, 5., -0.5\n", law[k]);
+    PRINTED(cards, "*CREEP, LAW=%s\n1.E-15, 5., -0.5\n", law[k]);
     scene s = {
         HARD,
         cards,
@@ -236,13 +227,11 @@ START_TEST(hardening_after_a_change_of_stress) {
         "*DSLOAD\nTOP, TY, \"100 + 0*t\"\n*OUTPUT, HDF5=NO\n*END STEP\n"
         "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n0.01, 2.\n"
         "*DSLOAD\nTOP, TY, \"80 + 0*t\"\n"};
-    job j = run_scene(&s, 0);
+    JOB j = run_scene(&s, 0);
     all_have(&j, -1, "ei_yy", expected[k], 0.01 * expected[k]);
     ck_assert_double_gt(fabs(expected[1] - expected[0]), 0.03 * expected[0]);
-    job_end(&j);
   }
 }
-END_TEST
 
 #define CHABOCHE(K) "*INELASTIC, LAW=CHABOCHE\n50., " #K ", 1.\n2.E4, 100.\n"
 #define SAW(low, high)                                    \
@@ -254,7 +243,7 @@ END_TEST
  * exp(-100 p)) while it is pulled for the first time; in closed loops of
  * plastic width dp between -+200 tanh(100 dp/2). alpha: p, then a_xx, a_yy, ...
  */
-START_TEST(armstrong_frederick_loop) {
+TEST(armstrong_frederick_loop) {
   enum { HALF = 50 };
   double high = 0, low = 0, p[2] = {0};
   scene s = {HARD,
@@ -264,7 +253,7 @@ START_TEST(armstrong_frederick_loop) {
              NULL,
              "*VISCO, INTEGRATOR=MIDPOINT\n0.02, 11.\n" SYMMETRY
              "*BOUNDARY, AMPLITUDE=SAW\nTOP, 2, 2, 0.012\n"};
-  job j = run_scene(&s, 0);
+  JOB j = run_scene(&s, 0);
   for (int k = 4; k < 11 * HALF; k += k == HALF - 1 ? 8 * HALF : 5) {
     dat d = job_table(&j, "ELEMENTS", k);
     double X = 2e4 * dat_at(&d, 0, "alpha_3"), all = dat_at(&d, 0, "alpha_1");
@@ -279,13 +268,11 @@ START_TEST(armstrong_frederick_loop) {
   ck_assert_double_gt(expected, 80);
   ck_assert_double_eq_tol(high, expected, 2e-3 * 200);
   ck_assert_double_eq_tol(low, -expected, 2e-3 * 200);
-  job_end(&j);
 }
-END_TEST
 
 /* Stress to and fro between 150 and -100: the bar gets longer in each cycle by
  * 1/100 log((200^2 - 50^2)/(200^2 - 100^2)) (Lemaitre, Chaboche 1990). */
-START_TEST(a_bar_ratchets) {
+TEST(a_bar_ratchets) {
   enum { CYCLE = 400 };
   scene s = {HARD,
              CHABOCHE(1.),
@@ -295,22 +282,19 @@ START_TEST(a_bar_ratchets) {
              "*VISCO, INTEGRATOR=BACKWARD\n0.005, 4.\n" SYMMETRY
              "*DSLOAD, AMPLITUDE=SAW\nTOP, TY, 1.\n"};
   double e[2];
-  job j = run_scene(&s, 0);
+  JOB j = run_scene(&s, 0);
   for (int k = 0; k < 2; ++k) {
-    dat d = job_table(&j, "ELEMENTS", (k + 1) * CYCLE);
+    DAT d = job_table(&j, "ELEMENTS", (k + 1) * CYCLE);
     e[k] = dat_at(&d, 0, "ei_yy");
-    dat_free(&d);
   }
   ck_assert_double_eq_tol(e[1] - e[0], 0.01 * log(1.25), 0.01 * 0.0022314);
-  job_end(&j);
 }
-END_TEST
 
 /* Limits of an explicit step of a bar: power law 2/(n E A s^(n-1)) = 40 under
  * 100, threshold 2 eta/(E + H) = 0.1818 beyond it, Zener 2 eta/(E0 + E1) = 4.
  * For the first two the program bounds it for strains held in the whole plane,
  * lower by 5 %. */
-START_TEST(explicit_limits) {
+TEST(explicit_limits) {
   static const struct {
     const char *elastic, *law, *load;
     double limit, below;
@@ -320,38 +304,33 @@ START_TEST(explicit_limits) {
               {SOFT, ZENER, HELD, 4, 0.99}};
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k)
     for (int beyond = 0; beyond < 2; ++beyond) {
-      char visco[80];
       double dt = rows[k].limit * (beyond ? 1.01 : rows[k].below);
-      snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=EULER\n%.15g, %.15g\n",
-               dt, dt);
+      PRINTED(visco, "*VISCO, INTEGRATOR=EULER\n%.15g, %.15g\n", dt, dt);
       scene s = {rows[k].elastic, rows[k].law, "CPS3", "", rows[k].load, visco};
-      job j = run_scene(&s, beyond ? 2 : 0);
+      JOB j = run_scene(&s, beyond ? 2 : 0);
       ck_assert_int_eq(strstr(j.errors, "P2050") != NULL, beyond);
-      job_end(&j);
     }
 }
-END_TEST
 
 /* A bar pulled by 2e-3 that flows from half of that on: nothing moves at the
  * start of the increment, and the rate of its stages is 5.5 times what is
  * stable. With r = (E + H)/eta = 11 the strain that has flowed is E 2e-3/(E +
  * H) (0.5 - (1 - exp(-r/2))/r). Cut increments have an error of their own. */
-START_TEST(stages_beyond_the_limit_cut_the_increment) {
+TEST(stages_beyond_the_limit_cut_the_increment) {
   static const char *const schemes[] = {"HEUN", "RK4", "HEUN, TOLERANCE=0.5",
                                         "RK4, TOLERANCE=0.5"};
   const double flowed = 2e-3 / 1.1 * (0.5 - (1 - exp(-5.5)) / 11);
   for (int k = 0; k < 4; ++k)
     for (int cut = k > 1; cut < 2; ++cut) {
-      char visco[256];
-      snprintf(visco, sizeof visco,
-               "*VISCO, INTEGRATOR=%s%s\n1., 1.%s\n" SYMMETRY
-               "TOP, 2, 2, 2.E-3\n*ACCURACY, TIME=YES, MESH=NO\n",
-               schemes[k], cut && k < 2 ? ", SUBSTEPS=AUTO" : "",
-               k < 2 ? "" : ", 1.");
+      PRINTED(visco,
+              "*VISCO, INTEGRATOR=%s%s\n1., 1.%s\n" SYMMETRY
+              "TOP, 2, 2, 2.E-3\n*ACCURACY, TIME=YES, MESH=NO\n",
+              schemes[k], cut && k < 2 ? ", SUBSTEPS=AUTO" : "",
+              k < 2 ? "" : ", 1.");
       scene s = {HARD,   "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
                  "CPS3", "",
                  NULL,   visco};
-      job j = run_scene(&s, cut ? 0 : 2);
+      JOB j = run_scene(&s, cut ? 0 : 2);
       if (cut) {
         char *sta = job_file(&j, "sta"), *row = strstr(sta, "CUT UNSTABLE");
         all_have(&j, -1, "stress_yy", 1e5 * (2e-3 - flowed), 2);
@@ -361,26 +340,23 @@ START_TEST(stages_beyond_the_limit_cut_the_increment) {
         free(sta);
       } else
         ck_assert_ptr_nonnull(strstr(j.errors, "not with dt = 1; give"));
-      job_end(&j);
     }
 }
-END_TEST
 
 /* A Maxwell bar is held between its floor and 1e-3, lifted within a quarter of
  * its relaxation time and, in a step of its own, pressed to 1e-3 again at once:
  * its stress is what has flowed, in units of E 1e-3
  *   2 s, s = 2 log(1 + exp(-1)/4) the time of the lift until no stress is left.
  * Before that step nothing but strains tells the error of the increments. */
-START_TEST(error_of_the_steps_goes_through_a_body_without_stress) {
+TESTS(error_of_the_steps_goes_through_a_body_without_stress, 2) {
   static const char *const press[] = {"VISCO, INTEGRATOR=BACKWARD",
                                       "QUASISTATIC"};
-  char visco[512];
-  snprintf(visco, sizeof visco,
-           "*VISCO, INTEGRATOR=BACKWARD\n0.5, 2.5\n*BOUNDARY\nLEFT, 1\n"
-           "TOP, 2, 2, -1.E-3, LIFT\n*ACCURACY, TIME=YES, MESH=NO\n" TABLES
-           "*END STEP\n*STEP\n*%s\n5.E-7, 1.E-6\n"
-           "*BOUNDARY\nTOP, 2, 2, -1.E-3\n",
-           press[_i]);
+  PRINTED(visco,
+          "*VISCO, INTEGRATOR=BACKWARD\n0.5, 2.5\n*BOUNDARY\nLEFT, 1\n"
+          "TOP, 2, 2, -1.E-3, LIFT\n*ACCURACY, TIME=YES, MESH=NO\n" TABLES
+          "*END STEP\n*STEP\n*%s\n5.E-7, 1.E-6\n"
+          "*BOUNDARY\nTOP, 2, 2, -1.E-3\n",
+          press[_i]);
   scene s = {SOFT,
              "*INELASTIC, LAW=MAXWELL\n2.\n",
              "CPS3",
@@ -389,30 +365,25 @@ START_TEST(error_of_the_steps_goes_through_a_body_without_stress) {
              "*AMPLITUDE, NAME=LIFT\n0., 1.\n2., 1.\n2.5, 0.\n",
              NULL,
              visco};
-  job j = run_scene(&s, 0);
-  dat d = job_table(&j, "ELEMENTS", -1);
-  const double stress = -dat_at(&d, 0, "stress_yy");
+  JOB j = run_scene(&s, 0);
+  const double stress = -job_value(&j, "ELEMENTS", -1, "stress_yy");
   const double exact = 4 * log(1 + exp(-1) / 4);
   const double error = 100 * fabs(stress - exact) / stress;
   const double told = job_told(&j, "time_error_percent");
   ck_assert_double_eq_tol(stress, pow(1.25, -4), 1e-6);
   ck_assert_msg(told > 0.5 * error && told < 1.5 * error, "%g told, %g true",
                 told, error);
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* MIDPOINT takes all stress of a held bar in an increment of twice its
  * relaxation time, and exp(-2) of it is left in truth: that is the error, in
  * the place of none. Such an increment is cut where they are chosen. */
-START_TEST(error_of_the_steps_of_stress_relaxed_at_once) {
-  char visco[200];
-  snprintf(visco, sizeof visco,
-           "*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, %s2, 2, -1.E-3\n*END STEP\n"
-           "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n4., 4.\n"
-           "*ACCURACY, MESH=YES, TIME=%s\n",
-           _i == 0 ? "" : "1\nTOP, ", _i == 0 ? "YES" : "BALANCED");
+TESTS(error_of_the_steps_of_stress_relaxed_at_once, 2) {
+  PRINTED(visco,
+          "*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, %s2, 2, -1.E-3\n*END STEP\n"
+          "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n4., 4.\n"
+          "*ACCURACY, MESH=YES, TIME=%s\n",
+          _i == 0 ? "" : "1\nTOP, ", _i == 0 ? "YES" : "BALANCED");
   scene s = {SOFT,
              "*INELASTIC, LAW=MAXWELL\n2.\n",
              "CPS3",
@@ -420,21 +391,17 @@ START_TEST(error_of_the_steps_of_stress_relaxed_at_once) {
              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n",
              NULL,
              visco};
-  job j = run_scene(&s, 0);
-  dat e = job_table(&j, "ENERGY", -1);
+  JOB j = run_scene(&s, 0);
   if (_i == 0)
-    ck_assert_double_eq_tol(job_told(&j, "time_error_percent"),
-                            100 * exp(-2.0), 5);
+    ck_assert_double_eq_tol(job_told(&j, "time_error_percent"), 100 * exp(-2.0),
+                            5);
   else
-    ck_assert_double_ge(dat_at(&e, 0, "increment"), 8);
-  dat_free(&e);
-  job_end(&j);
+    ck_assert_double_ge(job_value(&j, "ENERGY", -1, "increment"), 8);
 }
-END_TEST
 
 /* Creep at constant volume locks linear elements, but not in plane stress; one
  * that swells does not. A step that is not *VISCO says that nothing flows. */
-START_TEST(locking_creep_is_told) {
+TEST(locking_creep_is_told) {
   static const struct {
     const char *law, *section;
     int locks;
@@ -446,17 +413,14 @@ START_TEST(locking_creep_is_told) {
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
     scene s = {SOFT, rows[k].law, rows[k].section,
                "",   HELD,        "*VISCO, INTEGRATOR=MIDPOINT\n0.5, 1.\n"};
-    job j = run_scene(&s, 0);
+    JOB j = run_scene(&s, 0);
     ck_assert_int_eq(strstr(j.errors, "P2055") != NULL, rows[k].locks);
-    char *lst = job_file(&j, "lst");
+    FREED char *lst = job_file(&j, "lst");
     char *held = strstr(lst, "no inelastic strain grows in this step");
     ck_assert_ptr_nonnull(held);
     ck_assert_ptr_null(strstr(held + 1, "no inelastic strain grows"));
-    free(lst);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* No increment of the second step comes as far as its contact. */
 static job run_without_state(const char *second) {
@@ -476,45 +440,20 @@ static job run_without_state(const char *second) {
   return j;
 }
 
-START_TEST(creep_without_a_state_is_not_settled) {
-  job j = run_without_state("0.5, 1.");
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 1, "exit %d: %s", code, j.errors);
+TEST(creep_without_a_state_is_not_settled) {
+  JOB j = run_without_state("0.5, 1.");
+  CK_EXIT(job_run(&j, ""), 1, j);
   ck_assert_ptr_nonnull(strstr(j.errors, "P4017"));
-  job_end(&j);
 }
-END_TEST
 
 /* Up to 1e11 increments would follow, or 120. */
-START_TEST(increments_that_never_settle_end) {
-  job j = run_without_state("0.5, 1E5, 1E-6"), k;
+TEST(increments_that_never_settle_end) {
+  JOB j = run_without_state("0.5, 1E5, 1E-6"), k;
   k = run_without_state("0.5, 30., 0.25");
   int code = job_shell(&j, "timeout 100 protis fast");
   ck_assert_msg(code == 6 && strstr(j.errors, "in a row are not settled"),
                 "exit %d: %s", code, j.errors);
   ck_assert_int_eq(job_run(&k, ""), 1);
-  job_end(&j);
-  job_end(&k);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("laws");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, closed_forms, 0,
-                      (int)(sizeof forms / sizeof *forms));
-  tcase_add_test(tests, reduced_time_of_a_body_that_warms_up);
-  tcase_add_test(tests, hardening_after_a_change_of_stress);
-  tcase_add_test(tests, armstrong_frederick_loop);
-  tcase_add_test(tests, a_bar_ratchets);
-  tcase_add_test(tests, explicit_limits);
-  tcase_add_test(tests, stages_beyond_the_limit_cut_the_increment);
-  tcase_add_loop_test(
-      tests, error_of_the_steps_goes_through_a_body_without_stress, 0, 2);
-  tcase_add_loop_test(tests, error_of_the_steps_of_stress_relaxed_at_once, 0,
-                      2);
-  tcase_add_test(tests, locking_creep_is_told);
-  tcase_add_test(tests, creep_without_a_state_is_not_settled);
-  tcase_add_test(tests, increments_that_never_settle_end);
-  return unit_run("laws", tests);
-}
+UNIT_MAIN("laws")

@@ -2,7 +2,6 @@
  * Two layers, SOFT below and first in the mesh, HARD above with an inelastic
  * law: points, temperatures, clusters and laws of the second are its own.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/grid.h"
 #include "support/job.h"
@@ -20,34 +19,29 @@ typedef struct layers {
 } layers;
 
 static job run_layers(const layers *s, const char *words, int wanted) {
-  job j = job_begin("layers");
-  job_copy(&j, "tests/regression/mesh/layers.geo");
-  job_write(&j, "layers.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.3\n%s"
-            "*MATERIAL, NAME=E\n*ELASTIC\n200., 0.1\n%s"
-            "*SOLID SECTION, ELSET=SOFT, MATERIAL=E%s\n"
-            "*SOLID SECTION, ELSET=HARD, MATERIAL=M%s\n"
-            "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nSOFT, %g\nHARD, %g\n"
-            "*STEP\n*VISCO, INTEGRATOR=%s\n0.25, 1.\n"
-            "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n"
-            "*TEMPERATURE\nSOFT, %g\nHARD, %g\n"
-            "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
-            s->hard, s->soft, s->of_soft, s->of_hard, s->at[0], s->at[1],
-            s->integrator, s->at[0], s->at[1]);
-  int code = job_run(&j, words);
-  ck_assert_msg(code == wanted, "exit %d: %s", code, j.errors);
+  job j =
+      job_with("layers", "tests/regression/mesh/layers.geo",
+               "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
+               "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.3\n%s"
+               "*MATERIAL, NAME=E\n*ELASTIC\n200., 0.1\n%s"
+               "*SOLID SECTION, ELSET=SOFT, MATERIAL=E%s\n"
+               "*SOLID SECTION, ELSET=HARD, MATERIAL=M%s\n"
+               "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nSOFT, %g\nHARD, %g\n"
+               "*STEP\n*VISCO, INTEGRATOR=%s\n0.25, 1.\n"
+               "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n"
+               "*TEMPERATURE\nSOFT, %g\nHARD, %g\n"
+               "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
+               s->hard, s->soft, s->of_soft, s->of_hard, s->at[0], s->at[1],
+               s->integrator, s->at[0], s->at[1]);
+  CK_EXIT(job_run(&j, words), wanted, j);
   return j;
 }
 
 /* The largest inelastic strain across the layers; it is not zero. */
 static double creep_of(const layers *s) {
-  job j = run_layers(s, "", 0);
-  dat d = job_table(&j, "ELEMENTS", -1);
-  const double most = dat_max(&d, "ei_yy");
+  JOB j = run_layers(s, "", 0);
+  const double most = job_max(&j, "ELEMENTS", -1, "ei_yy");
   ck_assert_double_gt(most, 1e-5);
-  dat_free(&d);
-  job_end(&j);
   return most;
 }
 
@@ -58,7 +52,7 @@ static void same_creep(const layers *a, const layers *b) {
 
 /* Elements that expand without a law: as long as their temperature does not
  * change, the answer is that without expansion. */
-START_TEST(creep_beside_a_group_that_expands) {
+TEST(creep_beside_a_group_that_expands) {
   layers plain = {.hard = "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n2.\n",
                   .soft = "",
                   .of_soft = "",
@@ -69,10 +63,9 @@ START_TEST(creep_beside_a_group_that_expands) {
   expands.soft = "*EXPANSION\n1.E-5\n";
   same_creep(&expands, &plain);
 }
-END_TEST
 
 /* The relaxation time is that at 60, not at 20 or between. */
-START_TEST(laws_have_the_temperature_of_their_elements) {
+TEST(laws_have_the_temperature_of_their_elements) {
   layers plain = {.hard = "*INELASTIC, LAW=MAXWELL\n1.\n",
                   .soft = "",
                   .of_soft = "",
@@ -83,11 +76,10 @@ START_TEST(laws_have_the_temperature_of_their_elements) {
   table.hard = "*INELASTIC, LAW=MAXWELL\n9., , 20.\n1., , 60.\n";
   same_creep(&table, &plain);
 }
-END_TEST
 
 /* The law and the element that are too cold, whether those before them flow or
  * not. */
-START_TEST(cold_elements_are_named) {
+TEST(cold_elements_are_named) {
   layers s = {.hard =
                   "*INELASTIC, LAW=MAXWELL, SHIFT=ARRHENIUS, T_REF=300., "
                   "ACTIVATION=1000.\n10.\n",
@@ -98,18 +90,16 @@ START_TEST(cold_elements_are_named) {
   char *told[2];
   for (int k = 0; k < 2; ++k) {
     s.soft = k == 0 ? "" : "*INELASTIC, LAW=MAXWELL\n4.\n";
-    job j = run_layers(&s, "--check", 2);
+    JOB j = run_layers(&s, "--check", 2);
     const char *at =
         strstr(j.errors, "P2062: material M, step 1, time 0, element ");
     ck_assert_msg(at != NULL && strstr(at, "temperature -10 is") != NULL, "%s",
                   j.errors);
     told[k] = strndup(at, strcspn(at, "\n"));
-    job_end(&j);
   }
   ck_assert_str_eq(told[0], told[1]);
   for (int k = 0; k < 2; ++k) free(told[k]);
 }
-END_TEST
 
 /* What the listing says of a section. */
 static int is_listed_averaged(const job *j, const char *section) {
@@ -124,7 +114,7 @@ static int is_listed_averaged(const job *j, const char *section) {
 }
 
 /* What creeps at constant volume locks unless its own volume is averaged. */
-START_TEST(averaged_groups_do_not_lock) {
+TEST(averaged_groups_do_not_lock) {
   static const char *const averaged = ", FORMULATION=AVERAGED";
   for (int k = 0; k < 4; ++k) {
     const layers s = {
@@ -133,34 +123,30 @@ START_TEST(averaged_groups_do_not_lock) {
         .of_soft = k % 2 == 1 ? averaged : "",
         .of_hard = k / 2 == 1 ? averaged : "",
         .integrator = "BACKWARD"};
-    job j = run_layers(&s, "", 0);
+    JOB j = run_layers(&s, "", 0);
     ck_assert_msg((strstr(j.errors, "P4016") != NULL) == (k / 2 == 0), "%d: %s",
                   k, j.errors);
     ck_assert_int_eq(is_listed_averaged(&j, "SOFT"), k % 2);
     ck_assert_int_eq(is_listed_averaged(&j, "HARD"), k / 2);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* The law of the first group has no exact integrator, that of the second has.
  */
-START_TEST(integrators_fit_the_law_of_each_group) {
+TEST(integrators_fit_the_law_of_each_group) {
   const layers s = {.hard = "*INELASTIC, LAW=MAXWELL\n2.\n",
                     .soft = "*INELASTIC, LAW=NORTON\n1.E-6, 3.\n",
                     .of_soft = "",
                     .of_hard = "",
                     .at = {20, 20},
                     .integrator = "EXPONENTIAL"};
-  job j = run_layers(&s, "--check", 2);
+  JOB j = run_layers(&s, "--check", 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "NORTON of material E is not linear"));
   ck_assert_ptr_nonnull(strstr(j.errors, "\n1 error"));
-  job_end(&j);
 }
-END_TEST
 
 /* What the laws of groups took is told of the first of them. */
-START_TEST(laws_of_groups_have_one_cost) {
+TEST(laws_of_groups_have_one_cost) {
   static const char law[] = "*INELASTIC, LAW=MAXWELL\n2.\n";
   for (int k = 0; k < 2; ++k) {
     const layers s = {.hard = law,
@@ -169,7 +155,7 @@ START_TEST(laws_of_groups_have_one_cost) {
                       .of_hard = "",
                       .at = {20, 20},
                       .integrator = "HEUN"};
-    job j = run_layers(&s, "", 0);
+    JOB j = run_layers(&s, "", 0);
     char *lst = job_file(&j, "lst"), *at = lst;
     for (int i = 0; i < 2; ++i) {
       at = strstr(at + 1, "inelastic strain, HARD ");
@@ -178,16 +164,14 @@ START_TEST(laws_of_groups_have_one_cost) {
     at[strcspn(at, "\n")] = '\0';
     ck_assert_int_eq(strstr(at, "  part of the first group") != NULL, k);
     free(lst);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Rows on each other on a floor that they are glued to, the lower half so hard;
  * "unseen": the estimate of the error says that it sees nothing. */
 static double energy_of_rows(int hard, const int n[2], const char *cards,
                              int unseen) {
-  job j = job_begin("rows");
+  JOB j = job_begin("rows");
   block_file_write(&j, n, (double[]){4.0, 1.0}, n[1] > 1);
   job_write(
       &j, "rows.inp",
@@ -199,17 +183,12 @@ static double energy_of_rows(int hard, const int n[2], const char *cards,
       n[1] > 1 ? "*SOLID SECTION, ELSET=UPPER, MATERIAL=S, TYPE=CPE3\n" : "",
       cards);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  char *lst = job_file(&j, "lst");
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_int_eq(strstr(lst, "it may be many times as large") != NULL,
                    unseen);
   ck_assert_int_eq(
       strstr(lst, "the estimate of its error sees nothing") != NULL, unseen);
-  free(lst);
-  dat e = job_table(&j, "ENERGY", -1);
-  const double energy = dat_at(&e, 0, "strain_energy");
-  dat_free(&e);
-  job_end(&j);
-  return energy;
+  return job_value(&j, "ENERGY", -1, "strain_energy");
 }
 
 /*
@@ -217,7 +196,7 @@ static double energy_of_rows(int hard, const int n[2], const char *cards,
  * estimate was 0.85 % where the error is 16 %: there is stress across the free
  * ends. It says so, and TARGET= goes on to a mesh that tells.
  */
-START_TEST(rows_of_one_stress_have_no_estimate) {
+TEST(rows_of_one_stress_have_no_estimate) {
   static const int hard[] = {1000, 1};
   static const char plate[] = "TOP, 1\nTOP, 2, 2, -0.01\n*ACCURACY, ";
   for (int k = 0; k < 2; ++k) {
@@ -235,11 +214,10 @@ START_TEST(rows_of_one_stress_have_no_estimate) {
     ck_assert_double_le(last, right * (1 + 0.1 * 0.1));
   }
 }
-END_TEST
 
 /* Nor has a soft row that is pulled at its own end, but a block has one whose
  * loads its stress bears. */
-START_TEST(stress_across_sides_is_that_of_loads) {
+TEST(stress_across_sides_is_that_of_loads) {
   energy_of_rows(1000, (int[]){16, 2},
                  "TOP, 1, 2\n*DSLOAD\nSYMMETRY, TX, 1.\n*ACCURACY, MESH=YES",
                  1);
@@ -248,7 +226,6 @@ START_TEST(stress_across_sides_is_that_of_loads) {
   energy_of_rows(1, (int[]){32, 8},
                  "*DSLOAD\nTOP, TY, -1.\n*ACCURACY, MESH=YES", 0);
 }
-END_TEST
 
 /* Its stress is the same everywhere and across its sides that of their loads:
  * the estimate sees that there is no error. */
@@ -260,24 +237,22 @@ static void must_see_none(job *j, const char *cards) {
             cards);
   ck_assert_msg(job_run(j, "") == 0, "%s", j->errors);
   ck_assert_double_lt(job_told(j, "mesh_error_percent"), 1e-6);
-  char *lst = job_file(j, "lst");
+  FREED char *lst = job_file(j, "lst");
   ck_assert_ptr_null(strstr(lst, "it may be many times as large"));
-  free(lst);
   job_end(j);
 }
 
 /* A box with six stresses, E strain = (1 + nu) stress - nu trace. */
-START_TEST(six_stresses_across_sides_are_their_loads) {
+TEST(six_stresses_across_sides_are_their_loads) {
   static const char *const side[] = {"RIGHT", "TOP", "BACK", "LEFT", "FRONT"};
   static const double stress[3][3] = {
       {1.0, 0.4, 0.6}, {0.4, 2.0, 0.5}, {0.6, 0.5, 3.0}};
   static const int normal[] = {0, 1, 2, 0, 2};
   char cards[2000] = "*STEP\n*STATIC\n*BOUNDARY\n", path[100];
   job j = job_begin("even");
-  mesh *m = make_grid_3d((int[]){1, 1, 1}, (double[]){1.0, 2.0, 3.0});
+  OWNED mesh *m = make_grid_3d((int[]){1, 1, 1}, (double[]){1.0, 2.0, 3.0});
   snprintf(path, sizeof path, "%s/even.msh", j.dir);
   msh_write(path, m);
-  memory_free(m);
   for (int i = 0; i < 3; ++i)
     text_add(cards, sizeof cards, "BOTTOM, %d, %d, \"%.15g*x + %.15g*z\"\n",
              i + 1, i + 1, (1.3 * stress[i][0] - (i == 0) * 1.8) / 1000,
@@ -289,10 +264,9 @@ START_TEST(six_stresses_across_sides_are_their_loads) {
                (k > 2 ? -1 : 1) * stress[i][normal[k]]);
   must_see_none(&j, cards);
 }
-END_TEST
 
 /* Where forces act on the nodes of a side, and on both sides of a pair. */
-START_TEST(sides_that_nodes_load_are_not_free) {
+TEST(sides_that_nodes_load_are_not_free) {
   job j = job_begin("even");
   job_write(&j, "even.msh", "%s",
             MSH("5\n1 1 \"FLOOR\"\n1 2 \"LOWER\"\n1 3 \"UPPER\"\n1 4 \"TOP\"\n"
@@ -307,12 +281,11 @@ START_TEST(sides_that_nodes_load_are_not_free) {
                 "*BOUNDARY\nFLOOR, 2\nFLOOR, 1, 1, \"0.39E-3*x\"\n"
                 "UPPER, 1, 1, \"0.39E-3*x\"\n*CLOAD\nTOP, 2, -0.5\n");
 }
-END_TEST
 
 /* A row whose error is seen reaches a target by twice of it; where nothing is
  * seen there is no forecast. */
-START_TEST(row_that_is_seen_reaches_its_target) {
-  job j = job_begin("row");
+TEST(row_that_is_seen_reaches_its_target) {
+  JOB j = job_begin("row");
   for (int seen = 0; seen < 2; ++seen) {
     block_file_write(&j, (int[]){64, 1}, (double[]){4.0, 1.0}, 0);
     job_write(&j, "row.inp",
@@ -322,24 +295,14 @@ START_TEST(row_that_is_seen_reaches_its_target) {
               seen ? "*DSLOAD\nTOP, P, \"1+x\"\n" : "TOP, 1\nTOP, 2, 2, -.1\n");
     if (seen) {
       ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-      char *json = job_file(&j, "json");
+      FREED char *json = job_file(&j, "json");
       ck_assert_ptr_nonnull(strstr(json, "\"coarse_mesh\""));
       ck_assert_ptr_null(strstr(json, "\"total_error_percent\": null"));
-      free(json);
     } else {
       ck_assert_int_eq(job_run(&j, "--estimate-cost"), 1);
       ck_assert_ptr_nonnull(strstr(j.errors, "sees nothing"));
     }
   }
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("layers", creep_beside_a_group_that_expands,
-          laws_have_the_temperature_of_their_elements, cold_elements_are_named,
-          integrators_fit_the_law_of_each_group, averaged_groups_do_not_lock,
-          laws_of_groups_have_one_cost, rows_of_one_stress_have_no_estimate,
-          stress_across_sides_is_that_of_loads,
-          six_stresses_across_sides_are_their_loads,
-          sides_that_nodes_load_are_not_free,
-          row_that_is_seen_reaches_its_target)
+UNIT_MAIN("layers")

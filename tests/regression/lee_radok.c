@@ -8,7 +8,6 @@
  *                              (1/(3 K) - 1/(3 K + G)) exp(-3 K t/((3 K + G)
  * tau))) E = 1000, nu = 0.3, tau = 2, R = 10, P = 1; edges to 1 %.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -55,50 +54,37 @@ static job sink(int sphere, int deviatoric, const char *more) {
             radius(sphere, deviatoric, 2), load,
             deviatoric ? "DEVIATORIC" : "PROPORTIONAL",
             sphere ? "CAX3" : "CPE3", more);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
 static void edge_is(const job *j, int sphere, int k, double a) {
-  dat z = job_table(j, "ZONES", k);
-  ck_assert_double_eq_tol(dat_at(&z, 0, sphere ? "r_to" : "x_to"), a, 0.01 * a);
-  dat_free(&z);
+  ck_assert_double_eq_tol(job_value(j, "ZONES", k, sphere ? "r_to" : "x_to"), a,
+                          0.01 * a);
 }
 
-START_TEST(contact_grows_with_the_creep_function) {
+TESTS(contact_grows_with_the_creep_function, 4) {
   const int sphere = _i / 2, deviatoric = _i % 2;
-  job j = sink(sphere, deviatoric, "");
+  JOB j = sink(sphere, deviatoric, "");
   for (int t = 0; t < 3; ++t) {
     double a = radius(sphere, deviatoric, t);
     double known = edges[sphere][deviatoric][t];
     if (known > 0) ck_assert_double_eq_tol(a, known, 1e-9);
     edge_is(&j, sphere, 4 * t, a);
   }
-  dat f = job_table(&j, "TOTALS", -1);
-  ck_assert_double_eq_tol(dat_at(&f, 0, "normal"), sphere ? 1 : 0.5, 1e-8);
-  dat_free(&f);
-  job_end(&j);
+  ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "normal"),
+                          sphere ? 1 : 0.5, 1e-8);
 }
-END_TEST
 
 /* The load falls by 0.6 in 1 s. */
-START_TEST(contact_shrinks_as_ting_says) {
-  job j = sink(_i, 0,
+TESTS(contact_shrinks_as_ting_says, 2) {
+  JOB j = sink(_i, 0,
                "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n0.125, 1.\n"
                "*DSLOAD\nTOP, P, \"0.4*P\"\n*END STEP\n");
   for (int k = 2; k <= 8; ++k) {
     double t = 2 + k / 8.0, load = 1 - 0.6 * (t - 2);
     edge_is(&j, _i, 8 + k, radius(_i, 0, t + tau * log(load)));
   }
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("lee_radok");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, contact_grows_with_the_creep_function, 0, 4);
-  tcase_add_loop_test(tests, contact_shrinks_as_ting_says, 0, 2);
-  return unit_run("lee_radok", tests);
-}
+UNIT_MAIN("lee_radok")

@@ -3,7 +3,6 @@
  * runs, every card has an example and these are decks that run, version and
  * examples are those of the sources.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -13,8 +12,7 @@
 enum { TEXT = 2048 };
 
 static char *source(const char *path) {
-  char copy[256];
-  snprintf(copy, sizeof copy, "%s", path);
+  PRINTED(copy, "%s", path);
   char *dot = strrchr(copy, '.');
   *dot = '\0';
   job j = {.dir = "."};
@@ -43,15 +41,15 @@ static void expect(job *j, const char *command, int code) {
                 j->errors);
 }
 
-START_TEST(every_chapter_of_the_sources_prints) {
+TEST(every_chapter_of_the_sources_prints) {
   char command[TEXT], row[80];
   glob_t files;
-  job j = job_begin("manual"), list = job_begin("list");
+  JOB j = job_begin("manual"), list = job_begin("list");
   ck_assert_int_eq(glob("src/manual/*.md", 0, NULL, &files), 0);
   expect(&list, "protis --manual", 0);
   ck_assert_int_eq(count(list.text, "\n"), (int)files.gl_pathc + 1);
   for (size_t i = 0; i < files.gl_pathc; ++i) {
-    char *text = source(files.gl_pathv[i]);
+    FREED char *text = source(files.gl_pathv[i]);
     const char *name = strrchr(files.gl_pathv[i], '/') + 1;
     snprintf(command, sizeof command, "protis --manual %.*s",
              (int)strcspn(name, "."), name);
@@ -59,21 +57,17 @@ START_TEST(every_chapter_of_the_sources_prints) {
     ck_assert_msg(strncmp(j.text, text, strlen(text)) == 0, "%s", command);
     snprintf(row, sizeof row, "\n  %.*s ", (int)strcspn(name, "."), name);
     ck_assert_msg(strstr(list.text, row) != NULL, "no row of %s", name);
-    free(text);
   }
   expect(&j, "protis --manual nothing", 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "there is no chapter nothing"));
   ck_assert_ptr_nonnull(strstr(j.errors, "\n  tutorial "));
   globfree(&files);
-  job_end(&list);
-  job_end(&j);
 }
-END_TEST
 
 /* With a blank, a comma or a semicolon behind it. */
-START_TEST(every_folder_of_the_sources_has_its_place) {
+TEST(every_folder_of_the_sources_has_its_place) {
   glob_t folders;
-  char *text = source("src/manual/effects.md");
+  FREED char *text = source("src/manual/effects.md");
   const char *from = strstr(text, "## How the sources are ordered");
   ck_assert_ptr_nonnull(from);
   ck_assert_int_eq(glob("src/*/*/", 0, NULL, &folders), 0);
@@ -90,30 +84,24 @@ START_TEST(every_folder_of_the_sources_has_its_place) {
              strchr(" ,;\n", at[strlen(name)]) == NULL);
   }
   globfree(&folders);
-  free(text);
 }
-END_TEST
 
-START_TEST(every_card_has_an_example) {
-  job j = job_begin("manual"), cards = job_begin("cards");
+TEST(every_card_has_an_example) {
+  JOB j = job_begin("manual"), cards = job_begin("cards");
   expect(&j, "protis --manual deck", 0);
   expect(&cards, "protis --keywords", 0);
   ck_assert_int_gt(count(cards.text, "\n*"), 30);
   ck_assert_int_eq(count(j.text, "\nFor example\n"),
                    1 + count(cards.text, "\n*"));
-  job_end(&cards);
-  job_end(&j);
 }
-END_TEST
 
 /* Each form of them, as the help writes it. */
-START_TEST(lines_of_loads_begin_with_their_group) {
+TEST(lines_of_loads_begin_with_their_group) {
   static const char *const cards[] = {"BOUNDARY", "CLOAD", "DLOAD", "DSLOAD",
                                       "TEMPERATURE"};
   for (size_t i = 0; i < sizeof cards / sizeof *cards; ++i) {
-    char command[80];
-    job j = job_begin("cards");
-    snprintf(command, sizeof command, "protis --keywords %s", cards[i]);
+    JOB j = job_begin("cards");
+    PRINTED(command, "protis --keywords %s", cards[i]);
     expect(&j, command, 0);
     const char *line = strstr(j.text, "data lines: ");
     ck_assert_ptr_nonnull(line);
@@ -123,14 +111,12 @@ START_TEST(lines_of_loads_begin_with_their_group) {
       if (strncmp(line, "with FILE= ", 11) == 0) line += 11;
       ck_assert_msg(strncmp(line, "group", 5) == 0, "%s: %s", cards[i], line);
     }
-    job_end(&j);
   }
 }
-END_TEST
 
-START_TEST(examples_of_the_cards_run_without_a_warning) {
+TEST(examples_of_the_cards_run_without_a_warning) {
   glob_t files;
-  job j = job_begin("pattern");
+  JOB j = job_begin("pattern");
   ck_assert_int_eq(glob("src/manual/pattern*", 0, NULL, &files), 0);
   for (size_t i = 0; i < files.gl_pathc; ++i) job_copy(&j, files.gl_pathv[i]);
   globfree(&files);
@@ -138,34 +124,29 @@ START_TEST(examples_of_the_cards_run_without_a_warning) {
   ck_assert_str_eq(j.errors, "");
   expect(&j, "protis pattern_problem --quiet", 0);
   ck_assert_str_eq(j.errors, "");
-  job_end(&j);
 }
-END_TEST
 
 /* Chapters whose fenced blocks are commands; those of the tutorial, which draw,
  * run in tests/tools/pictures.py. */
 static const char *const commands[] = {"results", "batch", "trouble", "abaqus"};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
-START_TEST(every_command_runs) {
-  char cwd[TEXT / 4], command[TEXT];
-  job j = job_begin("manual");
+TESTS(every_command_runs, COMMANDS) {
+  char cwd[TEXT / 4];
+  JOB j = job_begin("manual");
   ck_assert_ptr_nonnull(getcwd(cwd, sizeof cwd));
-  snprintf(command, sizeof command,
-           "'%s/tools/run_manual' '%s/src/manual/%s.md' .", cwd, cwd,
-           commands[_i]);
+  PRINTED(command, "'%s/tools/run_manual' '%s/src/manual/%s.md' .", cwd, cwd,
+          commands[_i]);
   expect(&j, command, 0);
   ck_assert_int_gt(count(j.text, "line "), 0);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(version_is_the_newest_of_the_changes) {
+TEST(version_is_the_newest_of_the_changes) {
   char version[100], name[TEXT];
-  job j = job_begin("version");
-  char *changes = source("src/manual/changes.md"),
-       *readme = source("README.md"),
-       *package = source("tools/python/pyproject.toml");
+  JOB j = job_begin("version");
+  FREED char *changes = source("src/manual/changes.md"),
+             *readme = source("README.md"),
+             *package = source("tools/python/pyproject.toml");
   const char *at = strstr(changes, "\n## ");
   ck_assert_int_eq(sscanf(at, "\n## %99s", version), 1);
   for (int i = 0; i < 2; ++i) {
@@ -177,24 +158,19 @@ START_TEST(version_is_the_newest_of_the_changes) {
   ck_assert_msg(strstr(readme, name) != NULL, "README.md: no '%s'", name);
   snprintf(name, sizeof name, "\nversion = \"%s\"\n", version);
   ck_assert_msg(strstr(package, name) != NULL, "pyproject.toml: no '%s'", name);
-  free(package);
-  free(changes);
-  free(readme);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(every_example_is_copied_and_nothing_overwritten) {
+TEST(every_example_is_copied_and_nothing_overwritten) {
   char name[64], command[TEXT], cwd[TEXT / 4];
   int n = 0;
   glob_t folders;
-  job list = job_begin("list");
+  JOB list = job_begin("list");
   ck_assert_ptr_nonnull(getcwd(cwd, sizeof cwd));
   expect(&list, "protis --list examples", 0);
   ck_assert_int_eq(glob("input/*", 0, NULL, &folders), 0);
   for (const char *p = list.text; sscanf(p, "%63s", name) == 1; ++n) {
     if (strcmp(name, "protis") == 0) break;
-    job j = job_begin(name);
+    JOB j = job_begin(name);
     snprintf(command, sizeof command, "protis --example %s", name);
     expect(&j, command, 0);
     snprintf(command, sizeof command,
@@ -204,42 +180,35 @@ START_TEST(every_example_is_copied_and_nothing_overwritten) {
     snprintf(command, sizeof command,
              "echo mine > %s.inp; rm *.geo; protis --example %s", name, name);
     expect(&j, command, 4);
-    char *text = job_file(&j, "inp");
+    FREED char *text = job_file(&j, "inp");
     ck_assert_str_eq(text, "mine\n");
     ck_assert_int_eq(job_has(&j, "geo"), 0);
-    free(text);
-    job_end(&j);
     p = strchr(p, '\n') + 1;
   }
   ck_assert_int_eq(n, (int)folders.gl_pathc);
   globfree(&folders);
   expect(&list, "protis --example grecco", 2);
   ck_assert_ptr_nonnull(strstr(list.errors, "did you mean greco?"));
-  job_end(&list);
 }
-END_TEST
 
 /* A short cylinder on a floor under a pressure and a friction that follow the
  * place. */
 static char *axisymmetric_run(const char *parameters, const char *pressure,
                               const char *friction) {
-  job j = job_begin("ring");
-  job_copy(&j, "input/relaxing_seal/relaxing_seal.geo");
-  job_write(&j, "ring.inp",
-            "%s*MESH, FILE=relaxing_seal.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*SOLID SECTION, "
-            "ELSET=RING, MATERIAL=M, TYPE=CAX3\n*OBSTACLE, NAME=O, "
-            "TYPE=CONFORMING\n*CONTACT, NAME=C, GROUP=SEAT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB%s\n*STEP\n*STATIC\n*DSLOAD\n"
-            "LIP, P, %s\n*PRINT, CONTACT\n*END STEP\n",
-            parameters, friction, pressure);
+  JOB j =
+      job_with("ring", "input/relaxing_seal/relaxing_seal.geo",
+               "%s*MESH, FILE=relaxing_seal.geo\n"
+               "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*SOLID SECTION, "
+               "ELSET=RING, MATERIAL=M, TYPE=CAX3\n*OBSTACLE, NAME=O, "
+               "TYPE=CONFORMING\n*CONTACT, NAME=C, GROUP=SEAT, OBSTACLE=O\n"
+               "*FRICTION, CONTACT=C, LAW=COULOMB%s\n*STEP\n*STATIC\n*DSLOAD\n"
+               "LIP, P, %s\n*PRINT, CONTACT\n*END STEP\n",
+               parameters, friction, pressure);
   ck_assert_msg(job_run(&j, "--quiet") == 0, "%s: %s", pressure, j.errors);
-  char *text = job_file(&j, "dat");
-  job_end(&j);
-  return text;
+  return job_file(&j, "dat");
 }
 
-START_TEST(an_installed_program_works_and_is_removed) {
+TEST(an_installed_program_works_and_is_removed) {
   static const char *const there[] = {
       "usr/bin/protis", "usr/share/man/man1/protis.1",
       "usr/share/protis/tools/compare",
@@ -247,7 +216,7 @@ START_TEST(an_installed_program_works_and_is_removed) {
       "usr/share/protis/examples/greco/greco.geo"};
   char cwd[TEXT / 4], command[TEXT];
   const char *program = getenv("PROTIS");
-  job j = job_begin("install");
+  JOB j = job_begin("install");
   if (program == NULL) program = "build/release/protis";
   const char *end = strrchr(program, '/'), *build = end;
   while (build > program && build[-1] != '/') --build;
@@ -278,11 +247,9 @@ START_TEST(an_installed_program_works_and_is_removed) {
            0);
   }
   expect(&j, "test -z \"$(find staged -type f)\"", 0);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(axisymmetric_expressions_know_r_and_z) {
+TEST(axisymmetric_expressions_know_r_and_z) {
   static const char *const same[][5] = {
       {"*PARAMETER\nS = 3.\n", "\"<S>*x + y\"", "\n\"0.02*x + 0.1*y\"",
        "\"<S>*r + z\"", "\n\"0.02*r + 0.1*Z\""},
@@ -291,54 +258,30 @@ START_TEST(axisymmetric_expressions_know_r_and_z) {
       {"*PARAMETER\nR = 4.\n", "\"<R>*x\"", "\n0.3", "\"R*x\"", "\n0.3"}};
   for (size_t i = 0; i < sizeof same / sizeof *same; ++i) {
     const char *const *s = same[i];
-    char *old = axisymmetric_run(s[0], s[1], s[2]);
-    char *new = axisymmetric_run(s[0], s[3], s[4]);
+    FREED char *old = axisymmetric_run(s[0], s[1], s[2]);
+    FREED char *new = axisymmetric_run(s[0], s[3], s[4]);
     ck_assert_str_eq(old, new);
-    free(old);
-    free(new);
   }
 }
-END_TEST
 
-START_TEST(columns_are_listed_by_table) {
-  job j = job_begin("list");
+TEST(columns_are_listed_by_table) {
+  JOB j = job_begin("list");
   expect(&j, "protis --list columns", 0);
   ck_assert_ptr_nonnull(strstr(j.text, "\nCONTACT: "));
   ck_assert_ptr_nonnull(
       strstr(j.text, "\n  pressure           force/length^2 "));
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(every_list_is_found_by_a_word_near_it) {
+TEST(every_list_is_found_by_a_word_near_it) {
   static const char *const kinds[] = {"solvers",     "materials", "friction",
                                       "integrators", "columns",   "examples"};
-  job j = job_begin("list");
+  JOB j = job_begin("list");
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i) {
-    char line[80], near[80];
-    snprintf(line, sizeof line, "protis --list x%s", kinds[i]);
-    snprintf(near, sizeof near, "did you mean %s?", kinds[i]);
+    PRINTED(line, "protis --list x%s", kinds[i]);
+    PRINTED(near, "did you mean %s?", kinds[i]);
     expect(&j, line, 2);
     ck_assert_msg(strstr(j.errors, near) != NULL, "%s", j.errors);
   }
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *c = tcase_create("manual");
-  tcase_set_timeout(c, UNIT_SECONDS);
-  tcase_add_test(c, every_chapter_of_the_sources_prints);
-  tcase_add_test(c, every_folder_of_the_sources_has_its_place);
-  tcase_add_test(c, every_card_has_an_example);
-  tcase_add_test(c, lines_of_loads_begin_with_their_group);
-  tcase_add_test(c, examples_of_the_cards_run_without_a_warning);
-  tcase_add_loop_test(c, every_command_runs, 0, COMMANDS);
-  tcase_add_test(c, version_is_the_newest_of_the_changes);
-  tcase_add_test(c, every_example_is_copied_and_nothing_overwritten);
-  tcase_add_test(c, an_installed_program_works_and_is_removed);
-  tcase_add_test(c, axisymmetric_expressions_know_r_and_z);
-  tcase_add_test(c, columns_are_listed_by_table);
-  tcase_add_test(c, every_list_is_found_by_a_word_near_it);
-  return unit_run("manual", c);
-}
+UNIT_MAIN("manual")

@@ -2,7 +2,6 @@
  * Memory is expected: a run that would need more than there is ends at once
  * with exit code 5 and says what to do; what is expected is what a run takes.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -15,9 +14,9 @@ static void must_be_refused(const job *j, int code, const char *whose) {
   ck_assert_ptr_nonnull(strstr(j->errors, "--max-memory MB"));
 }
 
-START_TEST(limit_by_hand_is_obeyed) {
+TEST(limit_by_hand_is_obeyed) {
   static const char deck[] = "input/block_shear_3d/block_shear_3d";
-  job j = job_begin("block_shear_3d");
+  JOB j = job_begin("block_shear_3d");
   must_be_refused(&j, job_run_deck(&j, deck, "-D N=16 --max-memory 10"),
                   "--max-memory leaves ");
   ck_assert_int_eq(job_run_deck(&j, deck, "--max-memory 1"), 5);
@@ -28,20 +27,17 @@ START_TEST(limit_by_hand_is_obeyed) {
                    0);
   ck_assert_ptr_nonnull(strstr(j.text, "the run would be refused"));
   ck_assert_int_eq(job_run_deck(&j, deck, "-D N=4 --max-memory 400"), 0);
-  job_end(&j);
 }
-END_TEST
 
 /* The limit of the process, unless a greater one is set by hand: a .msh, so
  * that no library has to fit in. */
-START_TEST(limit_of_the_process_is_seen) {
+TEST(limit_of_the_process_is_seen) {
   struct rlimit old, less;
   job j = job_begin("job");
   job_write(&j, "job.txt", "9000\n");
   job_write(&j, "job.inp",
             "*CONDENSED PROBLEM, FILE=job.txt\n*STEP\n*STATIC\n*END STEP\n");
-  char command[200];
-  snprintf(command, sizeof command, "truncate -s 200M '%s/job.txt'", j.dir);
+  PRINTED(command, "truncate -s 200M '%s/job.txt'", j.dir);
   ck_assert_int_eq(system(command), 0);
   ck_assert_int_eq(getrlimit(RLIMIT_AS, &old), 0);
   less = old;
@@ -53,7 +49,6 @@ START_TEST(limit_of_the_process_is_seen) {
   must_be_refused(&j, job_run(&j, "--max-memory 2000"), "--max-memory leaves");
   job_end(&j);
 }
-END_TEST
 
 /* Sum of the numbers of the line "memory" of --check, bytes. */
 static double expected(const job *j) {
@@ -68,7 +63,7 @@ static double expected(const job *j) {
   return 1e6 * (factor + contact + rest);
 }
 
-START_TEST(runs_take_what_is_expected) {
+TEST(runs_take_what_is_expected) {
   static const char *const rows[][3] = {
       {"greco/greco", "greco", "-D N=64"},
       {"block_shear_3d/block_shear_3d", "block_shear_3d", "-D N=8"},
@@ -76,28 +71,23 @@ START_TEST(runs_take_what_is_expected) {
       {"creep_block/creep_block", "creep_block", "-D N=64"},
       {"lee_radok/lee_radok", "lee_radok", "-D NC=20"}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-    char deck[100], words[60];
-    job j = job_begin(rows[i][1]);
-    snprintf(deck, sizeof deck, "input/%s", rows[i][0]);
-    snprintf(words, sizeof words, "%s --check", rows[i][2]);
+    JOB j = job_begin(rows[i][1]);
+    PRINTED(deck, "input/%s", rows[i][0]);
+    PRINTED(words, "%s --check", rows[i][2]);
     ck_assert_int_eq(job_run_deck(&j, deck, words), 0);
     double most = expected(&j);
     ck_assert_int_eq(job_run_deck(&j, deck, rows[i][2]), 0);
     double taken = job_told(&j, "peak_bytes");
     ck_assert_msg(taken <= most && most <= 2.5 * taken,
                   "%s: expected %.3g, taken %.3g", deck, most, taken);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Bytes that the run holds at most, in increments of 1/n. */
 static double held(const char *material, const char *law, const char *card,
                    const char *second, int n) {
-  job j = job_begin("held");
-  job_copy(&j, "input/creep_block/creep_block.geo");
-  job_write(
-      &j, "held.inp",
+  JOB j = job_with(
+      "held", "input/creep_block/creep_block.geo",
       "*PARAMETER\nN = 8\n*MESH, FILE=creep_block.geo\n"
       "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n%s"
       "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -115,15 +105,12 @@ static double held(const char *material, const char *law, const char *card,
       "ELEMENTS, REACTIONS, TOTALS, ENERGY, ZONES, LOOP, GOALS\n*OUTPUT\n"
       "*END STEP\n*STEP\n%s\n%.17g, 1.\n*END STEP\n",
       material, law, card, 1.0 / n, second, 1.0 / n);
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  const double bytes = job_told(&j, "peak_bytes");
-  job_end(&j);
-  return bytes;
+  CK_EXIT(job_run(&j, ""), 0, j);
+  return job_told(&j, "peak_bytes");
 }
 
 /* But for the summary of each increment, which is smaller than two vectors. */
-START_TEST(more_increments_hold_no_more) {
+TEST(more_increments_hold_no_more) {
   static const char *const rows[][4] = {
       {"", "COULOMB", "", "*QUASISTATIC, FORM=VELOCITY"},
       {"*EXPANSION\n1.2E-5\n*INELASTIC, LAW=NORTON\n1E-10, 3.\n",
@@ -137,7 +124,5 @@ START_TEST(more_increments_hold_no_more) {
     ck_assert_double_le(more - few, 24 * 1500);
   }
 }
-END_TEST
 
-UNIT_MAIN("memory", limit_by_hand_is_obeyed, limit_of_the_process_is_seen,
-          runs_take_what_is_expected, more_increments_hold_no_more)
+UNIT_MAIN("memory")

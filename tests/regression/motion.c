@@ -3,7 +3,6 @@
  * form, a node on a turntable, whole scenes turned in space, and the round cone
  * of friction for every direction of slip.
  */
-#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/grid.h"
 #include "support/job.h"
@@ -53,19 +52,16 @@ static job run_node(const spring *s, const char *shape, const char *force_card,
             "*CLOAD\nTIP, %d, %.17g\n*SOLVER, TOL=1E-13\n*END STEP\n"
             "*STEP\n%s%s*PRINT, CONTACT, ENERGY\n*END STEP\n",
             2.6 * G, shape, s->mu, s->dim, s->dim, -s->N, steps, force_card);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
 /* Dissipation between the ends of increments a and b (from 1) of step 2. */
 static double dissipated(const job *j, int a, int b) {
-  dat p = job_table(j, "ENERGY", a - 1), q = job_table(j, "ENERGY", b - 1);
+  DAT p = job_table(j, "ENERGY", a - 1), q = job_table(j, "ENERGY", b - 1);
   double work =
       dat_at(&q, 0, "friction_work_end") - dat_at(&p, 0, "friction_work_end");
   ck_assert_double_le(fabs(dat_at(&q, 0, "energy_defect_relative")), 1e-10);
-  dat_free(&p);
-  dat_free(&q);
   return work;
 }
 
@@ -73,29 +69,26 @@ static const spring springs[] = {
     {2, 1000, 10, 0.3}, {2, 730, 4, 0.45}, {3, 1000, 10, 0.3}};
 
 /* W = 4 mu N (F0 - mu N) / K, whatever the increments between reversals. */
-START_TEST(loop_of_a_force) {
+TEST(loop_of_a_force) {
   static const int n[] = {1, 3, 10};
   for (int c = 0; c < 9; ++c) {
     const spring *s = &springs[c % 3];
-    char load[200], steps[80];
     double F0 = 5;
-    snprintf(load, sizeof load, "*CLOAD\nTIP, 1, %.17g, CYCLE\n", F0);
-    snprintf(steps, sizeof steps, "*QUASISTATIC\n%.17g, 5.\n", 1.0 / n[c / 3]);
-    job j = run_node(s,
+    PRINTED(load, "*CLOAD\nTIP, 1, %.17g, CYCLE\n", F0);
+    PRINTED(steps, "*QUASISTATIC\n%.17g, 5.\n", 1.0 / n[c / 3]);
+    JOB j = run_node(s,
                      s->dim == 3 ? "TYPE=PLANE\n0., 0., 0.\n0., 0., 1."
                                  : "TYPE=PLANE\n0., 0.\n0., 1.",
                      load, steps);
     double W = 4 * s->mu * s->N * (F0 - s->mu * s->N) / s->k;
     ck_assert_double_eq_tol(dissipated(&j, n[c / 3], 5 * n[c / 3]), W,
                             1e-6 * W);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* The obstacle alone moves, by U to and fro: a plane shifted, a roller turned,
  * a plane far from its axis, W = 4 mu N (U - mu N / k). */
-START_TEST(loop_of_an_obstacle) {
+TEST(loop_of_an_obstacle) {
   static const char *const shape[] = {
       "TYPE=PLANE, AMPLITUDE=CYCLE\n0., 0.\n0., 1.\nMOVE, %.17g, 0.",
       "TYPE=CYLINDER, RADIUS=2, AMPLITUDE=CYCLE\n0., -2.\n"
@@ -105,45 +98,37 @@ START_TEST(loop_of_an_obstacle) {
   for (int c = 0; c < 9; ++c) {
     spring s = {c % 3 == 2 ? 3 : 2, 500, 10, c < 3 ? 0.3 : 0.55};
     double U = c < 6 ? 0.02 : 0.05;
-    char card[200], steps[80];
-    snprintf(card, sizeof card, shape[c % 3], U);
-    snprintf(steps, sizeof steps, "*QUASISTATIC\n%.17g, 5.\n", 1.0 / (1 + c));
-    job j = run_node(&s, card, "", steps);
+    PRINTED(card, shape[c % 3], U);
+    PRINTED(steps, "*QUASISTATIC\n%.17g, 5.\n", 1.0 / (1 + c));
+    JOB j = run_node(&s, card, "", steps);
     double W = 4 * s.mu * s.N * (U - s.mu * s.N / s.k);
     ck_assert_double_eq_tol(dissipated(&j, 1 + c, 5 * (1 + c)), W, 1e-6 * W);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A turntable whose axis is rho from the node passes below it by rho times the
  * angle: after two turns the node is drawn along by mu N / k across the arm,
  * and mu N (rho angle - mu N / k) has become heat. */
-START_TEST(node_on_a_turntable) {
+TEST(node_on_a_turntable) {
   const spring s = {3, 400, 7, 0.6};
   const double rho = 1.5, limit = s.mu * s.N, turns = 4 * acos(-1.0);
   for (int k = 0; k < 4; ++k) {
     double beta = 0.9 * k - 0.4;
-    char card[200], steps[80];
-    snprintf(card, sizeof card,
-             "TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
-             "ROTATE, %.17g, %.17g, 0., 0., 0., 2., \"4*pi*t\"",
-             -rho * cos(beta), -rho * sin(beta));
-    snprintf(steps, sizeof steps, "*QUASISTATIC\n%.17g, 1.\n", 1.0 / (5 + k));
-    job j = run_node(&s, card, "", steps);
-    dat c = job_table(&j, "CONTACT", -1), e = job_table(&j, "ENERGY", -1);
+    PRINTED(card,
+            "TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
+            "ROTATE, %.17g, %.17g, 0., 0., 0., 2., \"4*pi*t\"",
+            -rho * cos(beta), -rho * sin(beta));
+    PRINTED(steps, "*QUASISTATIC\n%.17g, 1.\n", 1.0 / (5 + k));
+    JOB j = run_node(&s, card, "", steps);
+    DAT c = job_table(&j, "CONTACT", -1), e = job_table(&j, "ENERGY", -1);
     ck_assert_int_eq(c.n_row, 1);
     ck_assert_double_eq_tol(dat_at(&c, 0, "f_x"), -limit * sin(beta), 1e-9);
     ck_assert_double_eq_tol(dat_at(&c, 0, "f_y"), limit * cos(beta), 1e-9);
     ck_assert_double_eq_tol(dat_at(&e, 0, "friction_work_end"),
                             limit * (rho * turns - limit / s.k), 1e-6);
     ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
-    dat_free(&c);
-    dat_free(&e);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* ---- scenes turned as a whole -------------------------------------------- */
 
@@ -183,13 +168,12 @@ static job run_turned(int dim, const turn *t) {
   const int n2[] = {8, 4}, n3[] = {4, 4, 2};
   const double length2[] = {2, 1}, length3[] = {2, 1.5, 1};
   job j = job_begin("turned");
-  mesh *m = dim == 3 ? make_grid_3d(n3, length3) : make_grid_2d(n2, length2);
+  OWNED mesh *m =
+      dim == 3 ? make_grid_3d(n3, length3) : make_grid_2d(n2, length2);
   ck_assert_ptr_nonnull(m);
   turned_mesh_write(&j, m, t);
-  memory_free(m);
   write_deck(&j, dim, t);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
@@ -201,7 +185,7 @@ static void force(const dat *c, int row, int dim, double f[3]) {
 
 static void same_forces(const job *a, const job *b, int dim, const turn *t,
                         int block) {
-  dat p = job_table(a, "CONTACT", block), q = job_table(b, "CONTACT", block);
+  DAT p = job_table(a, "CONTACT", block), q = job_table(b, "CONTACT", block);
   double scale = dat_max(&p, "f_n");
   ck_assert_int_eq(p.n_row, q.n_row);
   for (int i = 0; i < p.n_row; ++i) {
@@ -213,36 +197,31 @@ static void same_forces(const job *a, const job *b, int dim, const turn *t,
       ck_assert_double_eq_tol(g[c], f[c], 1e-9 * scale);
     ck_assert_double_eq(dat_at(&p, i, "status"), dat_at(&q, i, "status"));
   }
-  dat_free(&p);
-  dat_free(&q);
 }
 
-START_TEST(scene_turned_as_a_whole_gives_the_answer_turned) {
+TEST(scene_turned_as_a_whole_gives_the_answer_turned) {
   static const turn turns[] = {{{0, 0, 1}, 0.0},
                                {{0, 0, 1}, 2.0},
                                {{0.48, 0.6, 0.64}, 1.1},
                                {{0, 0.8, -0.6}, -2.7}};
   for (int dim = 2; dim <= 3; ++dim) {
-    job plain = run_turned(dim, &turns[0]);
+    JOB plain = run_turned(dim, &turns[0]);
     for (int k = 1; k < (dim == 3 ? 4 : 2); ++k) {
-      job other = run_turned(dim, &turns[k]);
+      JOB other = run_turned(dim, &turns[k]);
       for (int block = 0; block < 16; ++block)
         same_forces(&plain, &other, dim, &turns[k], block);
-      job_end(&other);
     }
-    job_end(&plain);
   }
 }
-END_TEST
 
 /* At every slipping node of every increment |r_t| = mu r_n and r_t points
  * against the slip, for a slip that turns once round and with the turntable. */
-START_TEST(cone_is_round_for_every_direction_of_slip) {
+TEST(cone_is_round_for_every_direction_of_slip) {
   const turn t = {{0.48, 0.6, 0.64}, 1.1};
   int slipping = 0;
-  job j = run_turned(3, &t);
+  JOB j = run_turned(3, &t);
   for (int block = 0; block < 16; ++block) {
-    dat c = job_table(&j, "CONTACT", block), e = job_table(&j, "ENERGY", block);
+    DAT c = job_table(&j, "CONTACT", block), e = job_table(&j, "ENERGY", block);
     double scale = dat_max(&c, "f_n");
     for (int i = 0; i < c.n_row; ++i) {
       double n = dat_at(&c, i, "f_n"), s1 = dat_at(&c, i, "slip_1");
@@ -255,13 +234,9 @@ START_TEST(cone_is_round_for_every_direction_of_slip) {
       ck_assert_double_eq_tol(t2, -0.4 * n * s2 / s, 1e-10 * scale);
     }
     ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
-    dat_free(&c);
-    dat_free(&e);
   }
   ck_assert_int_gt(slipping, 100);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- supports that hold contact nodes ------------------------------------ */
 
@@ -289,30 +264,29 @@ static const carried carried_blocks[] = {
 static void check_carried(const carried *c, const char *kind,
                           const char *method) {
   const int solid = c->dim == 3;
-  job j = job_begin("carried");
-  job_copy(&j, solid ? "tests/regression/mesh/cube.geo"
-                     : "tests/regression/mesh/square.geo");
-  job_write(&j, "carried.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.%s\n%s*CONTACT, NAME=C, "
-            "GROUP=BOTTOM, OBSTACLE=O\n*FRICTION, CONTACT=C, LAW=%s"
-            "*AMPLITUDE, NAME=RISE\n0., 0., 9., 9.\n"
-            "*GOAL, QUANTITY=FORCE, NAME=DRAG, CONTACT=C, COMPONENT=1\n"
-            "*STEP\n*%s"
-            "*BOUNDARY\n%s*DSLOAD\nTOP, P, 1., RISE\n*SOLVER, METHOD=%s\n"
-            "*PRINT, TOTALS, CONTACT, ENERGY, REACTIONS, GOALS\n*END STEP\n",
-            solid ? "cube" : "square", solid ? ", 0.\n0., 0., 1." : "\n0., 1.",
-            c->floor, c->law, kind, c->supports, method);
+  JOB j = job_with(
+      "carried",
+      solid ? "tests/regression/mesh/cube.geo"
+            : "tests/regression/mesh/square.geo",
+      "*PARAMETER\nN = 2\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
+      "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.%s\n%s*CONTACT, NAME=C, "
+      "GROUP=BOTTOM, OBSTACLE=O\n*FRICTION, CONTACT=C, LAW=%s"
+      "*AMPLITUDE, NAME=RISE\n0., 0., 9., 9.\n"
+      "*GOAL, QUANTITY=FORCE, NAME=DRAG, CONTACT=C, COMPONENT=1\n"
+      "*STEP\n*%s"
+      "*BOUNDARY\n%s*DSLOAD\nTOP, P, 1., RISE\n*SOLVER, METHOD=%s\n"
+      "*PRINT, TOTALS, CONTACT, ENERGY, REACTIONS, GOALS\n*END STEP\n",
+      solid ? "cube" : "square", solid ? ", 0.\n0., 0., 1." : "\n0., 1.",
+      c->floor, c->law, kind, c->supports, method);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   ck_assert_ptr_null(strstr(j.errors, "warning"));
-  dat all = job_table(&j, "TOTALS", -1), n = job_table(&j, "CONTACT", -1);
-  dat e = job_table(&j, "ENERGY", -1), s = job_table(&j, "REACTIONS", -1);
-  dat drag = job_table(&j, "GOALS", -1);
+  DAT all = job_table(&j, "TOTALS", -1), n = job_table(&j, "CONTACT", -1);
+  DAT e = job_table(&j, "ENERGY", -1), s = job_table(&j, "REACTIONS", -1);
+  DAT drag = job_table(&j, "GOALS", -1);
   ck_assert_double_eq_tol(dat_at(&drag, 0, "value"), c->x, 1e-12);
   ck_assert_double_le(fabs(dat_at(&drag, 0, "error")), 1e-12);
   ck_assert_double_le(dat_at(&drag, 0, "band"), 1e-10);
-  dat_free(&drag);
   ck_assert_double_eq_tol(dat_at(&all, 0, "force_x"), c->x, 1e-12);
   ck_assert_double_eq_tol(dat_at(&all, 0, "force_y"), solid ? c->y : c->end,
                           1e-12);
@@ -323,14 +297,9 @@ static void check_carried(const carried *c, const char *kind,
   for (int i = 0; i < n.n_row; ++i)
     ck_assert_double_eq(dat_at(&n, i, "status"),
                         strstr(c->floor, "min(t,1)") == NULL ? 1 : 2);
-  dat_free(&all);
-  dat_free(&n);
-  dat_free(&e);
-  dat_free(&s);
-  job_end(&j);
 }
 
-START_TEST(supports_bear_the_friction_of_the_nodes_they_hold) {
+TESTS(supports_bear_the_friction_of_the_nodes_they_hold, 7) {
   const carried *c = &carried_blocks[_i];
   char kind[80];
   for (int velocity = 0; velocity < 2; ++velocity) {
@@ -341,12 +310,11 @@ START_TEST(supports_bear_the_friction_of_the_nodes_they_hold) {
   if (_i < 2) check_carried(c, kind, _i ? "SOR" : "LEMKE");
   if (_i < 3) check_carried(c, "STATIC\n1.\n", "AUTO");
 }
-END_TEST
 
 /* A block on a slope, carried over it by its supports or the slope below it,
  * which follows the body or is a plane of its own: it rises by the slope times
  * the way, and the supports bear the part of the normal force along them. */
-START_TEST(supports_carry_a_block_up_a_slope) {
+TESTS(supports_carry_a_block_up_a_slope, 2) {
   static const struct {
     const char *supports, *moves;
     int follows;
@@ -364,7 +332,7 @@ START_TEST(supports_carry_a_block_up_a_slope) {
   const double length = sqrt(1 + 0.05 * 0.05), drag = _i ? 0.2 * length : 0.0;
   double rise[11], force[11];
   for (int k = 0; k < 11; ++k) {
-    job j = job_begin("slope");
+    JOB j = job_begin("slope");
     job_write(
         &j, "slope.geo",
         "Point(1) = {0, 0, 0}; Point(2) = {1, 0.05, 0};\n"
@@ -388,8 +356,8 @@ START_TEST(supports_carry_a_block_up_a_slope) {
               _i ? "*FRICTION, CONTACT=C, LAW=COULOMB\n0.2\n" : "",
               cases[k].supports);
     ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-    dat all = job_table(&j, "TOTALS", -1), u = job_table(&j, "NODES", -1);
-    dat s = job_table(&j, "REACTIONS", -1), e = job_table(&j, "ENERGY", -1);
+    DAT all = job_table(&j, "TOTALS", -1), u = job_table(&j, "NODES", -1);
+    DAT s = job_table(&j, "REACTIONS", -1), e = job_table(&j, "ENERGY", -1);
     rise[k] = dat_sum(&u, "u_y") / u.n_row;
     force[k] = dat_at(&all, 0, "force_x");
     ck_assert_double_eq_tol(dat_sum(&s, "reaction_x"), -force[k], 1e-12);
@@ -401,11 +369,6 @@ START_TEST(supports_carry_a_block_up_a_slope) {
       ck_assert_double_eq_tol(dat_at(&all, 0, "normal"), length, 1e-12);
       ck_assert_double_eq_tol(fabs(dat_at(&all, 0, "tangential")), drag, 1e-12);
     }
-    dat_free(&all);
-    dat_free(&u);
-    dat_free(&s);
-    dat_free(&e);
-    job_end(&j);
   }
   for (int k = 0; k < 4; ++k) {
     ck_assert_double_eq_tol(rise[k], rise[8] + 0.001, 1e-12);
@@ -418,34 +381,28 @@ START_TEST(supports_carry_a_block_up_a_slope) {
   for (int k = 4; k < 11 && !_i; ++k)
     ck_assert_double_eq_tol(force[k], -0.05, 1e-12);
 }
-END_TEST
 
 /* Where an obstacle is back at its place up to rounding nothing has slid. */
-START_TEST(rounding_of_a_motion_is_no_slip) {
+TEST(rounding_of_a_motion_is_no_slip) {
   static const char *const ways[] = {"0.02*sin(2*pi*t)", "0.1*t+0.2*t-0.3*t",
                                      "3*(t/3)-t"};
   for (int k = 0; k < 3; ++k) {
-    job j = job_begin("still");
-    job_copy(&j, "tests/regression/mesh/square.geo");
-    job_write(&j, "still.inp",
-              "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-              "*ELASTIC\n1E9, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-              "MOVE, \"%s\", 0.\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.9\n*STEP\n*QUASISTATIC\n"
-              "%s, 1.\n*BOUNDARY\nBODY, 1\n*DSLOAD\nTOP, P, 1.\n"
-              "*PRINT, TOTALS\n*END STEP\n",
-              ways[k], k == 0 ? "0.5" : "0.1");
+    JOB j = job_with(
+        "still", "tests/regression/mesh/square.geo",
+        "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+        "*ELASTIC\n1E9, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+        "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+        "MOVE, \"%s\", 0.\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+        "*FRICTION, CONTACT=C, LAW=COULOMB\n0.9\n*STEP\n*QUASISTATIC\n"
+        "%s, 1.\n*BOUNDARY\nBODY, 1\n*DSLOAD\nTOP, P, 1.\n"
+        "*PRINT, TOTALS\n*END STEP\n",
+        ways[k], k == 0 ? "0.5" : "0.1");
     ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
     for (int b = 0; b < (k == 0 ? 2 : 10); ++b) {
-      dat all = job_table(&j, "TOTALS", b);
-      ck_assert_double_eq(dat_at(&all, 0, "force_x"), 0);
-      dat_free(&all);
+      ck_assert_double_eq(job_value(&j, "TOTALS", b, "force_x"), 0);
     }
-    job_end(&j);
   }
 }
-END_TEST
 
 /* ---- long motions -------------------------------------------------------- */
 
@@ -459,37 +416,34 @@ typedef struct long_motion {
 
 static int run_long(const long_motion *l, const char *solver, const char *form,
                     double *T, char reason[40]) {
-  job j = job_begin("long");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "long.inp",
-            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n%.17g, 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
-            "*STEP\n*QUASISTATIC, FORM=%s\n1., 1.\n*BOUNDARY\n%s"
-            "*DSLOAD\nTOP, P, %.17g\n*SOLVER, %s\n"
-            "*PRINT, TOTALS\n*END STEP\n",
-            l->E, l->floor, form, l->top, l->p, solver);
+  JOB j = job_with(
+      "long", "tests/regression/mesh/square.geo",
+      "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n%.17g, 0.3\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+      "*STEP\n*QUASISTATIC, FORM=%s\n1., 1.\n*BOUNDARY\n%s"
+      "*DSLOAD\nTOP, P, %.17g\n*SOLVER, %s\n"
+      "*PRINT, TOTALS\n*END STEP\n",
+      l->E, l->floor, form, l->top, l->p, solver);
   int code = job_run(&j, "");
   *T = NAN;
   reason[0] = '\0';
   if (code <= 1) {
-    dat t = job_table(&j, "TOTALS", -1);
+    DAT t = job_table(&j, "TOTALS", -1);
     *T = dat_at(&t, 0, "force_x");
-    dat_free(&t);
     char *sta = job_file(&j, "sta"), *last = strrchr(sta, ' ');
     last = strstr(sta, " UNSETTLED") ? strstr(sta, " UNSETTLED") : last;
     sscanf(last, " %39[^\n]", reason);
     free(sta);
   }
-  job_end(&j);
   return code;
 }
 
 /* What only carries is not in the scale of the residual: the friction force is
  * right, or the increment is not OK. */
-START_TEST(long_motions_leave_the_forces_right) {
+TEST(long_motions_leave_the_forces_right) {
   static const char *const methods[] = {"AUTO",   "NEWTON",   "LEMKE",
                                         "SOR",    "PCG",      "AUGLAG",
                                         "AITKEN", "LAGRANGE", "PROXIMAL"};
@@ -502,9 +456,9 @@ START_TEST(long_motions_leave_the_forces_right) {
   for (size_t k = 0; k < 4; ++k)
     for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m)
       for (int velocity = 0; velocity <= (m < 2); ++velocity) {
-        char solver[40], reason[40];
+        char reason[40];
         double T;
-        snprintf(solver, sizeof solver, "METHOD=%s", methods[m]);
+        PRINTED(solver, "METHOD=%s", methods[m]);
         int code = run_long(&scenes[k], solver,
                             velocity ? "VELOCITY" : "DISPLACEMENT", &T, reason);
         int ok = code == 0;
@@ -516,11 +470,10 @@ START_TEST(long_motions_leave_the_forces_right) {
                       "scene %zu, %s: T = %.12g, %s", k, methods[m], T, reason);
       }
 }
-END_TEST
 
 /* Rounding takes the digits of the forces: the increment does not count, with
  * or without a bound that says so. */
-START_TEST(forces_lost_to_rounding_are_never_ok) {
+TEST(forces_lost_to_rounding_are_never_ok) {
   static const struct {
     double p;
     const char *solver, *form;
@@ -541,26 +494,23 @@ START_TEST(forces_lost_to_rounding_are_never_ok) {
                   reason);
   }
 }
-END_TEST
 
 static job begin_two(void) {
   static const mesh_change none;
-  int *number = NULL;
-  char path[100];
+  FREED int *number = NULL;
   job j = job_begin("two");
-  snprintf(path, sizeof path, "%s/two.msh", j.dir);
+  PRINTED(path, "%s/two.msh", j.dir);
   FILE *f = fopen(path, "w");
   ck_assert_ptr_nonnull(f);
   ck_assert(scene_mesh_write(f, "rect 3 3 1 1 + rect 3 3 1 1 at 2 0", &none,
                              &number));
   fclose(f);
-  free(number);
   return j;
 }
 
 /* Two blocks of moduli 1 and 1e4 on one floor, or one that relaxes: what is
  * counted is right, T = 0.3 N of each, and what is far from rounding counts. */
-START_TEST(bodies_and_laws_count_by_their_own_forces) {
+TEST(bodies_and_laws_count_by_their_own_forces) {
   static const struct {
     const char *step, *floor;
     double top, p;
@@ -575,7 +525,7 @@ START_TEST(bodies_and_laws_count_by_their_own_forces) {
       {"*VISCO, INTEGRATOR=RK4\n1., 1.\n", "", 1e3, 1e-12, 0}};
   for (size_t k = 0; k < sizeof run / sizeof *run; ++k) {
     int visco = run[k].step[1] == 'V';
-    job j = begin_two();
+    JOB j = begin_two();
     job_write(&j, "two.inp",
               "*MESH, FILE=two.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n%s"
               "*MATERIAL, NAME=H\n*ELASTIC\n1.E4, 0.3\n%s"
@@ -596,21 +546,18 @@ START_TEST(bodies_and_laws_count_by_their_own_forces) {
     ck_assert_msg(code == 0 || !run[k].solvable, "run %zu: exit %d: %s", k,
                   code, j.errors);
     for (int b = 0; b < 2 && code == 0; ++b) {
-      dat t = job_table(&j, "TOTALS", -1);
+      DAT t = job_table(&j, "TOTALS", -1);
       double T = 0.3 * run[k].p * (b == 0 ? 1 : 1e3);
       ck_assert_msg(fabs(fabs(dat_at(&t, b, "force_x")) - T) <= 0.05 * T,
                     "run %zu, body %d: %g for %g", k, b,
                     dat_at(&t, b, "force_x"), T);
-      dat_free(&t);
     }
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A sphere of an axisymmetric model moves along the axis, by any expression
  * that is zero across it; one that is not is refused, between steps too. */
-START_TEST(a_sphere_moves_along_the_axis) {
+TEST(a_sphere_moves_along_the_axis) {
   static const struct {
     const char *move;
     int code;
@@ -620,46 +567,25 @@ START_TEST(a_sphere_moves_along_the_axis) {
               {"\"t*(t - 1)\", \"0.1*t\"", 2}};
   double pressed = 0.0;
   for (size_t k = 0; k < sizeof runs / sizeof *runs; ++k) {
-    job j = job_begin("axis");
-    job_copy(&j, "tests/regression/mesh/square.geo");
-    job_write(&j, "axis.inp",
-              "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
-              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
-              "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=10.\n0., -10.\n"
-              "MOVE, %s\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-              "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 2\n"
-              "*PRINT, TOTALS\n*END STEP\n",
-              runs[k].move);
+    JOB j = job_with(
+        "axis", "tests/regression/mesh/square.geo",
+        "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+        "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=10.\n0., -10.\n"
+        "MOVE, %s\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+        "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 2\n"
+        "*PRINT, TOTALS\n*END STEP\n",
+        runs[k].move);
     ck_assert_int_eq(job_run(&j, "--no-timing --quiet"), runs[k].code);
     if (runs[k].code == 0) {
-      dat t = job_table(&j, "TOTALS", -1);
+      DAT t = job_table(&j, "TOTALS", -1);
       if (k == 0) pressed = dat_at(&t, 0, "normal");
       ck_assert_double_gt(pressed, 0.01);
       ck_assert_double_eq(dat_at(&t, 0, "normal"), pressed);
-      dat_free(&t);
     } else {
       ck_assert_ptr_nonnull(strstr(j.errors, "off the axis of symmetry"));
     }
-    job_end(&j);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("motion");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_test(tests, loop_of_a_force);
-  tcase_add_test(tests, loop_of_an_obstacle);
-  tcase_add_test(tests, node_on_a_turntable);
-  tcase_add_test(tests, scene_turned_as_a_whole_gives_the_answer_turned);
-  tcase_add_test(tests, cone_is_round_for_every_direction_of_slip);
-  tcase_add_loop_test(tests, supports_bear_the_friction_of_the_nodes_they_hold,
-                      0, 7);
-  tcase_add_loop_test(tests, supports_carry_a_block_up_a_slope, 0, 2);
-  tcase_add_test(tests, rounding_of_a_motion_is_no_slip);
-  tcase_add_test(tests, long_motions_leave_the_forces_right);
-  tcase_add_test(tests, forces_lost_to_rounding_are_never_ok);
-  tcase_add_test(tests, bodies_and_laws_count_by_their_own_forces);
-  tcase_add_test(tests, a_sphere_moves_along_the_axis);
-  return unit_run("motion", tests);
-}
+UNIT_MAIN("motion")

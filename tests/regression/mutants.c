@@ -6,7 +6,6 @@
  *
  *   MUTANTS=20000 MUTANT_SEED=7 mutants    many instead of the few of the tests
  */
-#include "base/base.h"
 #include "effects/rows.h"
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
@@ -145,9 +144,9 @@ static void echo_nowhere(const model *m) {
 
 /* Everything short of solving; what --check does. */
 static status check_deck(const char *path, message_log *log, mesh *msh) {
-  deck *d = NULL;
-  model *m = NULL;
-  free_motion *list = NULL;
+  OWNED deck *d = NULL;
+  OWNED model *m = NULL;
+  OWNED free_motion *list = NULL;
   int n;
   status st = deck_read(path, 0, NULL, log, &d);
   if (st == OK || st == ERR_DECK) st = model_from_deck(d, log, &m);
@@ -157,17 +156,14 @@ static status check_deck(const char *path, message_log *log, mesh *msh) {
     st = history_motions(m, msh, effect_table, 0, &n, &list);
     echo_nowhere(m);
   }
-  memory_free(list);
-  memory_free(m);
-  memory_free(d);
   return st;
 }
 
 /* Exit code of the child: 0 if refused and ACCEPTED if not, where status and
  * messages agree. */
 static int judge(const char *path, int dim) {
-  message_log *log = NULL;
-  mesh *msh = example_mesh(dim);
+  OWNED message_log *log = NULL;
+  OWNED mesh *msh = example_mesh(dim);
   if (message_log_new(&log) != OK) return 1;
   status st = check_deck(path, log, msh);
   FILE *out = fopen("/dev/null", "w");
@@ -177,8 +173,6 @@ static int judge(const char *path, int dim) {
   if (st == ERR_INTERNAL || st == ERR_MEMORY) return 2;
   if (st == OK && errors) return 3;
   if (st != OK && !errors) return 4;
-  memory_free(log);
-  memory_free(msh);
   return st == OK ? ACCEPTED : 0;
 }
 
@@ -196,8 +190,8 @@ static int run_child(const char *path, int dim) {
 
 static int run_mutant(const deck_texts *d, int which, const char *text,
                       int dim) {
-  char folder[64], path[80];
-  snprintf(path, sizeof path, "%s/mutant.inp", folder_new(folder));
+  char folder[64];
+  PRINTED(path, "%s/mutant.inp", folder_new(folder));
   FILE *f = fopen(path, "w");
   ck_assert_msg(f != NULL, "%s", path);
   fputs(text, f);
@@ -230,7 +224,7 @@ static char *with_grid_groups(const char *text) {
   return out;
 }
 
-START_TEST(no_edit_makes_the_program_fail) {
+TEST(no_edit_makes_the_program_fail) {
   deck_texts d = {.n = 0};
   unsigned long long dice = setting("MUTANT_SEED", 20240229);
   long number = (long)setting("MUTANTS", QUICK);
@@ -241,13 +235,11 @@ START_TEST(no_edit_makes_the_program_fail) {
   for (long k = 0; k < number && failed < 5; ++k) {
     int which = (int)below((size_t)d.n, &dice);
     int dim = strstr(d.path[which], "3d") != NULL ? 3 : 2;
-    char *base = with_grid_groups(d.text[which]);
-    char *text = mutate(base, &dice);
+    FREED char *base = with_grid_groups(d.text[which]);
+    FREED char *text = mutate(base, &dice);
     int code = run_mutant(&d, which, text, dim);
     accepted += code == ACCEPTED;
     failed += code != 0 && code != ACCEPTED;
-    free(text);
-    free(base);
   }
   free_decks(&d);
   ck_assert_int_eq(failed, 0);
@@ -256,6 +248,5 @@ START_TEST(no_edit_makes_the_program_fail) {
   ck_assert_int_lt(accepted, number - number / 20);
   points_end(&(points){.kind = "edited decks", .tried = number});
 }
-END_TEST
 
-UNIT_MAIN("mutants", no_edit_makes_the_program_fail)
+UNIT_MAIN("mutants")

@@ -3,7 +3,6 @@
  * NESTED=YES, and the passes of *ACCURACY, TARGET=. Fewer steps, the same
  * answer.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/small_job.h"
 #include "support/traced.h"
@@ -18,25 +17,22 @@ static const char told[] = "started from the coarser mesh";
 /* Iterations of the first increment in a listing. */
 static int first_steps(const job *j) {
   int n = -1;
-  char *lst = job_file(j, "lst");
+  FREED char *lst = job_file(j, "lst");
   const char *at = strstr(lst, "converged, iterations ");
   ck_assert_ptr_nonnull(at);
   ck_assert_int_eq(sscanf(at, "converged, iterations %d", &n), 1);
-  free(lst);
   return n;
 }
 
 static int tells(const job *j) {
-  char *lst = job_file(j, "lst");
-  const int n = strstr(lst, told) != NULL;
-  free(lst);
-  return n;
+  FREED char *lst = job_file(j, "lst");
+  return strstr(lst, told) != NULL;
 }
 
 /* Elements twice as long: half to a quarter of the contact nodes. */
 static void must_be_coarser(const job *j) {
   int coarse, other, all;
-  char *lst = job_file(j, "lst");
+  FREED char *lst = job_file(j, "lst");
   const char *at = strstr(lst, told);
   ck_assert_ptr_nonnull(at);
   ck_assert_int_eq(sscanf(at + strlen(told), " (%d contact nodes): %d of %d",
@@ -44,18 +40,15 @@ static void must_be_coarser(const job *j) {
                    3);
   ck_assert_msg(coarse >= 0.2 * all && coarse <= 0.71 * all, "%d of %d", coarse,
                 all);
-  free(lst);
 }
 
 /* Forces at the end, of the largest. */
 static double apart(const job *a, const job *b, const char *column) {
-  dat x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
+  DAT x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
   double most = dat_max(&x, column), worst = 0;
   ck_assert_int_eq(x.n_row, y.n_row);
   for (int i = 0; i < x.n_row; ++i)
     worst = fmax(worst, fabs(dat_at(&x, i, column) - dat_at(&y, i, column)));
-  dat_free(&x);
-  dat_free(&y);
   return worst / most;
 }
 
@@ -63,29 +56,26 @@ static double apart(const job *a, const job *b, const char *column) {
  * "least". */
 static void must_save(const char *deck, const char *words, int least,
                       int most) {
-  job cold, nested;
+  JOB cold, nested;
   ck_assert_int_eq(job_run_with(&cold, deck, "", 1, words), 0);
-  int code = job_run_with(&nested, deck, "*SOLVER, NESTED=YES\n", 1, words);
-  ck_assert_msg(code == 0, "exit %d: %s", code, nested.errors);
+  CK_EXIT(job_run_with(&nested, deck, "*SOLVER, NESTED=YES\n", 1, words), 0,
+          nested);
   int without = first_steps(&cold), with = first_steps(&nested);
   ck_assert_msg(without >= least && without <= 14 && with <= most,
                 "%s: %d steps, cold %d", deck, with, without);
   ck_assert(!tells(&cold));
   must_be_coarser(&nested);
   ck_assert_double_le(apart(&cold, &nested, "f_n"), 1e-9);
-  job_end(&cold);
-  job_end(&nested);
 }
 
-START_TEST(coarser_mesh_saves_steps) {
+TEST(coarser_mesh_saves_steps) {
   must_save("input/greco/greco", "-D N=64", 9, 3);
   must_save("input/hertz_line/hertz_line", "-D NC=32", 8, 3);
   must_save("input/hertz_sphere/hertz_sphere_3d", "", 8, 3);
 }
-END_TEST
 
 /* The first increment alone starts there: a run that goes on needs no mesh. */
-START_TEST(nested_run_goes_on) {
+TEST(nested_run_goes_on) {
   int changes, all;
   job both[2];
   const char *const words[] = {NULL, NULL};
@@ -103,22 +93,16 @@ START_TEST(nested_run_goes_on) {
   ck_assert_msg(file == NULL, ".%s differs", file);
   for (int k = 0; k < 2; ++k) job_end(&both[k]);
 }
-END_TEST
 
 /* The second pass starts from the first. */
-START_TEST(passes_start_from_the_last) {
-  job cold, j;
+TEST(passes_start_from_the_last) {
+  JOB cold, j;
   const char *deck = "input/hertz_line/hertz_line";
   ck_assert_int_eq(job_run_with(&cold, deck, "", 1, "-D NC=8"), 0);
-  int code = job_run_with(&j, deck, "*ACCURACY, TARGET=4\n", 1, "-D NC=4");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run_with(&j, deck, "*ACCURACY, TARGET=4\n", 1, "-D NC=4"), 0, j);
   ck_assert(tells(&j) && !tells(&cold));
   ck_assert_msg(first_steps(&j) <= 4 && first_steps(&cold) >= 6,
                 "%d steps, cold %d", first_steps(&j), first_steps(&cold));
-  job_end(&cold);
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("nested", coarser_mesh_saves_steps, nested_run_goes_on,
-          passes_start_from_the_last)
+UNIT_MAIN("nested")

@@ -7,11 +7,6 @@
 #include "support/job.h"
 #include "support/unit.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 const int job_without_fields = 1;
 
 /* Block [0, 1] x [0, height] with n segments along its base, TYPE as given. */
@@ -24,8 +19,7 @@ typedef struct block {
 
 static job run_block_as(const block *b, const char *name) {
   job j = job_begin(name);
-  char file[40];
-  snprintf(file, sizeof file, "%s.inp", name);
+  PRINTED(file, "%s.inp", name);
   job_copy(&j, "tests/regression/mesh/square.geo");
   job_write(&j, file,
             "*PARAMETER\nN = %d\nLY = %g\n*MESH, FILE=square.geo\n"
@@ -36,8 +30,7 @@ static job run_block_as(const block *b, const char *name) {
             "*FRICTION, CONTACT=C, %s\n%s"
             "*PRINT, CONTACT, TOTALS, ENERGY\n*END STEP\n",
             b->n, b->height, b->nu, b->type, b->friction, b->steps);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
   return j;
 }
 
@@ -61,18 +54,16 @@ static job run_block(const block *b) { return run_block_as(b, "block"); }
 
 /* m1 of the bump is 0.33445: T/(mu p L) = 1 - m1 rho/L, and the course of the
  * limit from the edge inwards. */
-START_TEST(uniform_pressure_has_its_closed_form) {
+TEST(uniform_pressure_has_its_closed_form) {
   static const double radius[] = {0.2, 0.1, 0.05},
                       expected[] = {0.933109200, 0.966554600, 0.983277300},
                       course[] = {0.5, 0.7027446459, 0.8770327167, 0.9839947499,
                                   1.0};
   for (int q = 0; q < 3; ++q) {
-    char friction[80];
-    snprintf(friction, sizeof friction, "LAW=NONLOCAL, RADIUS=%g\n0.3\n",
-             radius[q]);
+    PRINTED(friction, "LAW=NONLOCAL, RADIUS=%g\n0.3\n", radius[q]);
     block b = {160, 0.05, 0, "CPE3", friction, PRESSED};
-    job j = run_block(&b);
-    dat d = job_table(&j, "CONTACT", -1);
+    JOB j = run_block(&b);
+    DAT d = job_table(&j, "CONTACT", -1);
     double total = dat_sum(&d, "limit") / (0.3 * 10.0);
     double h = 1.0 / b.n, error = 0.15 * h * h / radius[q];
     ck_assert_double_eq_tol(total, expected[q], error);
@@ -83,19 +74,16 @@ START_TEST(uniform_pressure_has_its_closed_form) {
       ck_assert_double_eq_tol(limit / (0.3 * f), course[k < 5 ? k : k - 5],
                               1e-6);
     }
-    dat_free(&d);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Half of the body: no edge at x = 0, the other edge as before. */
-START_TEST(mirror_takes_the_edge_away) {
+TEST(mirror_takes_the_edge_away) {
   block b = {
       40,     0.1, 0, "CPE3", "LAW=NONLOCAL, RADIUS=0.2, MIRROR_X=MIN\n0.3\n",
       PRESSED};
-  job j = run_block(&b);
-  dat d = job_table(&j, "CONTACT", -1);
+  JOB j = run_block(&b);
+  DAT d = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < d.n_row; ++i) {
     double x = dat_at(&d, i, "x");
     double W = dat_at(&d, i, "limit") / (0.3 * dat_at(&d, i, "f_n"));
@@ -103,12 +91,9 @@ START_TEST(mirror_takes_the_edge_away) {
     if (x > 0.81) ck_assert_double_lt(W, 0.9999);
     if (x == 1.0) ck_assert_double_eq_tol(W, 0.5, 1e-6);
   }
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(normalized_edges_keep_a_uniform_pressure) {
+TEST(normalized_edges_keep_a_uniform_pressure) {
   static const char *const types[] = {"CPE3", "CAX3"};
   for (int k = 0; k < 2; ++k) {
     block b = {20,
@@ -117,16 +102,13 @@ START_TEST(normalized_edges_keep_a_uniform_pressure) {
                types[k],
                "LAW=NONLOCAL, RADIUS=0.3, EDGE=NORMALIZED\n0.3\n",
                PRESSED};
-    job j = run_block(&b);
-    dat d = job_table(&j, "CONTACT", -1);
+    JOB j = run_block(&b);
+    DAT d = job_table(&j, "CONTACT", -1);
     for (int i = 0; i < d.n_row; ++i)
       ck_assert_double_eq_tol(dat_at(&d, i, "limit"),
                               0.3 * dat_at(&d, i, "f_n"), 1e-9);
-    dat_free(&d);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* ---- the average of the printed pressures ------------------------------ */
 
@@ -158,8 +140,8 @@ static void expect_average(const char *friction, double radius,
   block b = {N, 1, 0.2, "CPE3", friction, PUSHED};
   double p[N + 1], limit[N + 1], t[N + 1], top = 0.0;
   int n_open = 0;
-  job j = run_block(&b);
-  dat d = job_table(&j, "CONTACT", -1);
+  JOB j = run_block(&b);
+  DAT d = job_table(&j, "CONTACT", -1);
   for (int i = 0; i <= N; ++i) {
     int row = dat_row_near(&d, "x", (double)i / N);
     double length = (i == 0 || i == N ? 0.5 : 1.0) / N;
@@ -177,11 +159,9 @@ static void expect_average(const char *friction, double radius,
                   expected);
     ck_assert_double_le(fabs(t[i]), limit[i] + 1e-8 * top);
   }
-  dat_free(&d);
-  job_end(&j);
 }
 
-START_TEST(limit_is_the_average_of_the_pressures) {
+TEST(limit_is_the_average_of_the_pressures) {
   expect_average("LAW=NONLOCAL, RADIUS=0.125\n1.\n", 0.125, bump, 6e-3);
   expect_average("LAW=NONLOCAL, RADIUS=0.25\n1.\n", 0.25, bump, 3e-3);
   expect_average("LAW=NONLOCAL, RADIUS=0.25, DISTANCE=GEODESIC\n1.\n", 0.25,
@@ -189,17 +169,16 @@ START_TEST(limit_is_the_average_of_the_pressures) {
   expect_average("LAW=NONLOCAL, RADIUS=0.2, KERNEL=CONE\n1.\n", 0.2, cone,
                  3e-3);
 }
-END_TEST
 
 /* Beyond the pressed zone friction acts on separated points; with ZONE=CONTACT
  * it does not, and the other nodes have the average as before. */
 static void expect_zone(const char *steps) {
   block b = {64, 1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.2\n1.\n", steps};
-  job free_zone = run_block(&b);
+  JOB free_zone = run_block(&b);
   b.friction = "LAW=NONLOCAL, RADIUS=0.2, ZONE=CONTACT\n1.\n";
-  job closed_zone = run_block_as(&b, "zone");
-  dat f = job_table(&free_zone, "CONTACT", -1);
-  dat c = job_table(&closed_zone, "CONTACT", -1);
+  JOB closed_zone = run_block_as(&b, "zone");
+  DAT f = job_table(&free_zone, "CONTACT", -1);
+  DAT c = job_table(&closed_zone, "CONTACT", -1);
   double separated = 0.0;
   int touching = 0;
   for (int i = 0; i < f.n_row; ++i) {
@@ -215,62 +194,51 @@ static void expect_zone(const char *steps) {
   ck_assert_double_gt(separated, 0.01);
   ck_assert_int_gt(touching, 30);
   ck_assert_int_lt(touching, 65);
-  dat_free(&f);
-  dat_free(&c);
-  job_end(&free_zone);
-  job_end(&closed_zone);
 }
 
 /* A node at the edge that opens with friction and touches without ends without:
  * the search for the zone ends, with a force on no open node. */
-START_TEST(node_that_comes_and_goes_has_no_friction) {
-  job j = job_begin("edge");
+TEST(node_that_comes_and_goes_has_no_friction) {
+  JOB j = job_begin("edge");
   ck_assert_int_eq(job_run_deck(&j, "input/nonlocal_slider/nonlocal_hertz",
                                 "-D NC=16 -D RHO=0.05"),
                    0);
-  dat c = job_table(&j, "CONTACT", -1);
+  DAT c = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < c.n_row; ++i)
     if (dat_at(&c, i, "status") == 0)
       ck_assert_double_eq(dat_at(&c, i, "f_t"), 0.0);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* Found in one increment, or from the zone of the one before. */
-START_TEST(zone_confines_friction_to_the_contact) {
+TEST(zone_confines_friction_to_the_contact) {
   expect_zone(PUSHED);
   expect_zone(
       "*STEP\n*STATIC\n*BOUNDARY\nRIGHT, 1\n"
       "*DSLOAD\nTOP, P, 5.\nLEFT, P, 15.\n");
 }
-END_TEST
 
 /* The zone of the increment before is where an increment begins: with nothing
  * new, one solution each. */
-START_TEST(zone_that_stays_is_found_at_once) {
+TEST(zone_that_stays_is_found_at_once) {
   long calls[2];
   for (int k = 0; k < 2; ++k) {
-    char steps[300];
-    snprintf(steps, sizeof steps, "%s*END STEP\n*STEP\n*QUASISTATIC\n%g, 1.\n",
-             PUSHED, k == 0 ? 1.0 : 0.1);
+    PRINTED(steps, "%s*END STEP\n*STEP\n*QUASISTATIC\n%g, 1.\n", PUSHED,
+            k == 0 ? 1.0 : 0.1);
     block b = {
         32,   1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.2, ZONE=CONTACT\n1.\n",
         steps};
-    job j = run_block(&b);
+    JOB j = run_block(&b);
     calls[k] = job_stage(&j, "contact solver", NULL);
-    job_end(&j);
   }
   ck_assert_int_eq(calls[1] - calls[0], 9);
 }
-END_TEST
 
 /* ---- local limit, other laws ------------------------------------------- */
 
 static void expect_same(const job *a, const job *b, double tolerance) {
   static const char *const names[] = {"u_n", "u_t", "f_n", "f_t", "limit"};
   for (int k = 0; k < 2; ++k) {
-    dat p = job_table(a, "CONTACT", k), q = job_table(b, "CONTACT", k);
+    DAT p = job_table(a, "CONTACT", k), q = job_table(b, "CONTACT", k);
     ck_assert_int_eq(p.n_row, q.n_row);
     for (size_t c = 0; c < sizeof names / sizeof *names; ++c) {
       if (!dat_has(&p, names[c])) continue;
@@ -282,63 +250,52 @@ static void expect_same(const job *a, const job *b, double tolerance) {
                       "block %d, row %d, %s: %.17g, %.17g", k, i, names[c],
                       dat_at(&p, i, names[c]), dat_at(&q, i, names[c]));
     }
-    dat_free(&p);
-    dat_free(&q);
   }
 }
 
-START_TEST(small_radius_is_local_friction) {
+TEST(small_radius_is_local_friction) {
   static const char *const types[] = {"CPE3", "CPS3", "CAX3"};
   static const char *const small[] = {"1E-9", "1E-3", "0.06"};
   for (int k = 0; k < 3; ++k) {
-    char friction[80];
     block b = {16, 1, 0.2, types[k], "LAW=COULOMB\n1.\n", PUSHED};
     if (k == 2)
       b.steps =
           "*STEP\n*QUASISTATIC\n0.5, 1.\n*DSLOAD\nTOP, P, 5.\n"
           "RIGHT, P, 4.\n";
-    job local = run_block(&b);
-    snprintf(friction, sizeof friction, "LAW=NONLOCAL, RADIUS=%s\n1.\n",
-             small[k]);
+    JOB local = run_block(&b);
+    PRINTED(friction, "LAW=NONLOCAL, RADIUS=%s\n1.\n", small[k]);
     b.friction = friction;
-    job other = run_block_as(&b, "small");
+    JOB other = run_block_as(&b, "small");
     expect_same(&local, &other, 1e-13);
-    job_end(&local);
-    job_end(&other);
   }
 }
-END_TEST
 
-static void stage_cost_of(const job *j, const char *stage, long *calls,
+static void stage_cost_of(const job *j, const char *name, long *calls,
                           long *bytes) {
-  char *list = job_file(j, "lst");
+  FREED char *list = job_file(j, "lst");
   const char *at = list;
   double cpu;
-  while ((at = strstr(at, stage)) != NULL &&
-         sscanf(at + strlen(stage), " %ld %lf %ld", calls, &cpu, bytes) != 3)
+  while ((at = strstr(at, name)) != NULL &&
+         sscanf(at + strlen(name), " %ld %lf %ld", calls, &cpu, bytes) != 3)
     ++at;
   ck_assert_ptr_nonnull(at);
-  free(list);
 }
 
 /* The whole run without --no-timing, for the cost table. */
 static void cost_with(const char *friction, long *calls, long *bytes) {
-  job j = job_begin("cost");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "cost.inp",
-            "*PARAMETER\nN = 8\n*MESH, FILE=square.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, %s\n" PUSHED "*END STEP\n",
-            friction);
+  JOB j = job_with("cost", "tests/regression/mesh/square.geo",
+                   "*PARAMETER\nN = 8\n*MESH, FILE=square.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
+                   "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                   "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+                   "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+                   "*FRICTION, CONTACT=C, %s\n" PUSHED "*END STEP\n",
+                   friction);
   ck_assert_int_eq(job_run(&j, ""), 0);
   stage_cost_of(&j, "nonlocal average", calls, bytes);
-  job_end(&j);
 }
 
-START_TEST(only_the_nonlocal_law_pays) {
+TEST(only_the_nonlocal_law_pays) {
   static const char *const free_of_it[] = {"LAW=COULOMB\n0.3\n",
                                            "LAW=TRESCA\n1.\n", "LAW=NONE\n",
                                            "LAW=NONLOCAL, RADIUS=0.5\n0.\n"};
@@ -355,45 +312,38 @@ START_TEST(only_the_nonlocal_law_pays) {
   cost_with("LAW=NONLOCAL, RADIUS=0.5\n\"0.3*t\"\n", &calls, &bytes);
   ck_assert_int_eq(calls, 1);
 }
-END_TEST
 
 /* mu(t) that is 0.4 at the end of both increments, and mu(x) = 0.4. */
-START_TEST(mu_multiplies_the_average) {
+TEST(mu_multiplies_the_average) {
   block b = {20, 1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.3\n0.4\n", PUSHED};
-  job constant = run_block(&b);
+  JOB constant = run_block(&b);
   b.friction =
       "LAW=NONLOCAL, RADIUS=0.3\n\"0.4 + 8*(t - 0.5)*(t - 1) + 0*x\"\n";
-  job course = run_block_as(&b, "course");
+  JOB course = run_block_as(&b, "course");
   expect_same(&constant, &course, 1e-13);
-  job_end(&constant);
-  job_end(&course);
 }
-END_TEST
 
 /* ---- solvers ----------------------------------------------------------- */
 
-START_TEST(every_method_gives_the_same_answer) {
+TEST(every_method_gives_the_same_answer) {
   char steps[400];
   block b = {24, 1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.25\n0.6\n", HELD};
-  job first = run_block(&b);
+  JOB first = run_block(&b);
   for (int k = 0; solver_list[k] != NULL; ++k) {
     snprintf(steps, sizeof steps, "%s*SOLVER, METHOD=%s, TOL=1E-11\n", HELD,
              solver_list[k]->name);
     b.steps = steps;
-    job other = run_block_as(&b, "other");
+    JOB other = run_block_as(&b, "other");
     expect_same(&first, &other, 1e-7);
-    job_end(&other);
   }
-  job_end(&first);
 }
-END_TEST
 
 /* ---- contacts apart ---------------------------------------------------- */
 
 /* The left and the right half of a base as two contacts: each average ends
  * where its contact ends. */
-START_TEST(contacts_do_not_see_each_other) {
-  job j = job_begin("pair");
+TEST(contacts_do_not_see_each_other) {
+  JOB j = job_begin("pair");
   job_write(
       &j, "pair.geo",
       "DefineConstant[ N = 20 ];\n"
@@ -418,7 +368,7 @@ START_TEST(contacts_do_not_see_each_other) {
             "*DSLOAD\nTOP, P, 1.\n*PRINT, CONTACT\n*END STEP\n");
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "%s", j.errors);
-  dat d = job_table(&j, "CONTACT", -1);
+  DAT d = job_table(&j, "CONTACT", -1);
   static const double course[] = {0.5, 0.7027446459, 0.8770327167, 0.9839947499,
                                   1.0};
   for (int k = 1; k <= 4; ++k) {
@@ -429,10 +379,7 @@ START_TEST(contacts_do_not_see_each_other) {
     ck_assert_double_eq_tol(
         dat_at(&d, b, "limit") / (0.1 * dat_at(&d, b, "f_n")), course[k], 1e-6);
   }
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- three dimensions, rings ------------------------------------------- */
 
@@ -451,26 +398,24 @@ static double square_mass(double x, double y, double radius) {
 }
 
 static job run_box(const char *friction, const char *steps) {
-  job j = job_begin("box");
-  job_copy(&j, "tests/regression/mesh/cube.geo");
-  job_write(&j, "box.inp",
-            "*PARAMETER\nN = 7\nLZ = 0.3\n*MESH, FILE=cube.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, %s\n%s*PRINT, CONTACT, TOTALS\n*END STEP\n",
-            friction, steps);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j = job_with(
+      "box", "tests/regression/mesh/cube.geo",
+      "*PARAMETER\nN = 7\nLZ = 0.3\n*MESH, FILE=cube.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=C, %s\n%s*PRINT, CONTACT, TOTALS\n*END STEP\n",
+      friction, steps);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
-START_TEST(square_base_has_the_mass_of_the_kernel) {
-  job j = run_box("LAW=NONLOCAL, RADIUS=0.35\n0.3\n",
+TEST(square_base_has_the_mass_of_the_kernel) {
+  JOB j = run_box("LAW=NONLOCAL, RADIUS=0.35\n0.3\n",
                   "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*DSLOAD\n"
                   "TOP, P, 10.\n");
-  dat d = job_table(&j, "CONTACT", -1);
+  DAT d = job_table(&j, "CONTACT", -1);
   int inside = 0, corner = 0;
   for (int i = 0; i < d.n_row; ++i) {
     double x = dat_at(&d, i, "x"), y = dat_at(&d, i, "y");
@@ -485,23 +430,19 @@ START_TEST(square_base_has_the_mass_of_the_kernel) {
   }
   ck_assert_int_gt(inside, 0);
   ck_assert_int_eq(corner, 4);
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* Every slipping node is on its cone and slips against its force. */
-START_TEST(cone_is_exact_at_any_angle) {
+TEST(cone_is_exact_at_any_angle) {
   static const double angle[] = {0.3, 1.9, 4.4};
   for (int k = 0; k < 3; ++k) {
-    char steps[300];
     int slipping = 0;
-    snprintf(steps, sizeof steps,
-             "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, %.17g\nTOP, 2, 2, %.17g\n"
-             "TOP, 3, 3, -0.003\n*SOLVER, TOL=1E-12\n",
-             0.004 * cos(angle[k]), 0.004 * sin(angle[k]));
-    job j = run_box("LAW=NONLOCAL, RADIUS=0.4\n0.3\n", steps);
-    dat d = job_table(&j, "CONTACT", -1);
+    PRINTED(steps,
+            "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, %.17g\nTOP, 2, 2, %.17g\n"
+            "TOP, 3, 3, -0.003\n*SOLVER, TOL=1E-12\n",
+            0.004 * cos(angle[k]), 0.004 * sin(angle[k]));
+    JOB j = run_box("LAW=NONLOCAL, RADIUS=0.4\n0.3\n", steps);
+    DAT d = job_table(&j, "CONTACT", -1);
     double scale = dat_max(&d, "limit");
     for (int i = 0; i < d.n_row; ++i) {
       double t1 = dat_at(&d, i, "f_t1"), t2 = dat_at(&d, i, "f_t2");
@@ -514,15 +455,12 @@ START_TEST(cone_is_exact_at_any_angle) {
                               1e-9 * scale * slip);
     }
     ck_assert_int_gt(slipping, 10);
-    dat_free(&d);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A disc of radius 1 under uniform pressure: W at the radius r is the mass of
  * the bump in the plane within the disc. */
-START_TEST(round_base_has_the_mass_of_the_kernel) {
+TEST(round_base_has_the_mass_of_the_kernel) {
   enum { STEPS = 400 };
   block b = {40,
              0.1,
@@ -531,8 +469,8 @@ START_TEST(round_base_has_the_mass_of_the_kernel) {
              "LAW=NONLOCAL, RADIUS=0.3\n0.3\n",
              "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1\nTOP, 1\n*DSLOAD\n"
              "TOP, P, 10.\n"};
-  job j = run_block(&b);
-  dat d = job_table(&j, "CONTACT", -1);
+  JOB j = run_block(&b);
+  DAT d = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < d.n_row; ++i) {
     double r = dat_at(&d, i, "r"), sum = 0.0, h = 0.6 / STEPS;
     double W = dat_at(&d, i, "limit") / (0.3 * dat_at(&d, i, "f_n"));
@@ -545,33 +483,27 @@ START_TEST(round_base_has_the_mass_of_the_kernel) {
       }
     ck_assert_double_eq_tol(W, sum / (0.46651239317833 * 0.09), 2e-3);
   }
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- together with other cards ----------------------------------------- */
 
 /* Given normal forces: the limit is the average of what is given. */
-START_TEST(given_forces_are_averaged) {
+TEST(given_forces_are_averaged) {
   enum { N = 64 };
   double p[N + 1];
-  job j = job_begin("given");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "given.inp",
-            "*PARAMETER\nN = %d\nLY = 0.2\n*MESH, FILE=square.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*CONTACT FORCE, CONTACT=C\n\"1 + x*x\"\n"
-            "*FRICTION, CONTACT=C, LAW=NONLOCAL, RADIUS=0.15\n0.5\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2\n"
-            "*PRINT, CONTACT\n*END STEP\n",
-            N);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat d = job_table(&j, "CONTACT", -1);
+  JOB j = job_with("given", "tests/regression/mesh/square.geo",
+                   "*PARAMETER\nN = %d\nLY = 0.2\n*MESH, FILE=square.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.2\n"
+                   "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                   "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+                   "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+                   "*CONTACT FORCE, CONTACT=C\n\"1 + x*x\"\n"
+                   "*FRICTION, CONTACT=C, LAW=NONLOCAL, RADIUS=0.15\n0.5\n"
+                   "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2\n"
+                   "*PRINT, CONTACT\n*END STEP\n",
+                   N);
+  CK_EXIT(job_run(&j, ""), 0, j);
+  DAT d = job_table(&j, "CONTACT", -1);
   for (int i = 0; i <= N; ++i) p[i] = 1 + (double)i * i / (N * N);
   for (int i = 0; i <= N; ++i) {
     int row = dat_row_near(&d, "x", (double)i / N);
@@ -581,30 +513,24 @@ START_TEST(given_forces_are_averaged) {
     ck_assert_double_eq_tol(fabs(dat_at(&d, row, "f_t")),
                             dat_at(&d, row, "limit"), 1e-10);
   }
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* Both forms of an increment, with friction confined to the contact. */
-START_TEST(velocity_form_has_the_same_zone) {
+TEST(velocity_form_has_the_same_zone) {
   static const char velocity[] =
       "*STEP\n*QUASISTATIC, FORM=VELOCITY\n0.5, 1.\n*BOUNDARY\nRIGHT, 1\n"
       "*DSLOAD\nTOP, P, 5.\nLEFT, P, 15.\n";
   block b = {
       24,    1, 0.2, "CPE3", "LAW=NONLOCAL, RADIUS=0.3, ZONE=CONTACT\n1.\n",
       PUSHED};
-  job one = run_block(&b);
+  JOB one = run_block(&b);
   b.steps = velocity;
-  job two = run_block_as(&b, "velocity");
+  JOB two = run_block_as(&b, "velocity");
   expect_same(&one, &two, 1e-8);
-  job_end(&one);
-  job_end(&two);
 }
-END_TEST
 
 /* Another *FRICTION in a later step: another radius, then local. */
-START_TEST(law_may_change_from_step_to_step) {
+TEST(law_may_change_from_step_to_step) {
   block b = {16,
              1,
              0,
@@ -615,61 +541,52 @@ START_TEST(law_may_change_from_step_to_step) {
              "*FRICTION, CONTACT=C, LAW=NONLOCAL, RADIUS=0.25\n0.3\n"
              "*PRINT, CONTACT\n*END STEP\n*STEP\n*STATIC\n"
              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"};
-  job j = run_block(&b);
+  JOB j = run_block(&b);
   for (int k = 0; k < 3; ++k) {
-    dat d = job_table(&j, "CONTACT", k);
+    DAT d = job_table(&j, "CONTACT", k);
     static const double expected[] = {0.7027446459, 0.8770327167, 1.0};
     int row = dat_row_near(&d, "x", 0.125);
     ck_assert_double_eq_tol(
         dat_at(&d, row, "limit") / (0.3 * dat_at(&d, row, "f_n")), expected[k],
         1e-6);
-    dat_free(&d);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* Given pressure p on the length L of an upper block that slides, on a wider
  * and thicker one: with k constant an edge takes mu p rho/4 of the friction,
  * normalised nothing, whichever surface is the slave and wherever its nodes
  * are; nor where the mesh is coarser than the radius. */
-START_TEST(slave_may_end_beyond_its_master) {
+TEST(slave_may_end_beyond_its_master) {
   static const char *const ends[] = {"0.25, EDGE=FREE", "0.25, EDGE=NORMALIZED",
                                      "1E-3"};
   for (int k = 0; k < 18; ++k) {
     const double wanted = 0.3 * 2 * (k % 3 > 0 ? 0.6 : 0.6 - 0.5 * 0.25);
-    job j = job_begin("wide");
-    job_copy(&j, "tests/regression/mesh/pair.geo");
-    job_write(&j, "wide.inp",
-              "*PARAMETER\nN = %d\nM = 20\nC = 0.2\n*MESH, FILE=pair.geo\n"
-              "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n"
-              "*SOLID SECTION, ELSET=LOWER, MATERIAL=A, THICKNESS=3.\n"
-              "*SOLID SECTION, ELSET=UPPER, MATERIAL=A\n"
-              "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
-              "*CONTACT FORCE, CONTACT=P\n2.\n"
-              "*FRICTION, CONTACT=P, LAW=NONLOCAL, KERNEL=CONSTANT,\n"
-              "RADIUS=%s\n0.3\n*STEP\n*STATIC\n"
-              "*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 1, 0.1\nTOP, 2\n"
-              "*PRINT, TOTALS\n*END STEP\n",
-              (const int[]){31, 33, 34}[k / 6], k / 3 % 2 ? "FIRST" : "SECOND",
-              ends[k % 3]);
-    int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-    dat t = job_table(&j, "TOTALS", -1);
-    const double is = fabs(dat_at(&t, 0, "tangential"));
+    JOB j =
+        job_with("wide", "tests/regression/mesh/pair.geo",
+                 "*PARAMETER\nN = %d\nM = 20\nC = 0.2\n*MESH, FILE=pair.geo\n"
+                 "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n"
+                 "*SOLID SECTION, ELSET=LOWER, MATERIAL=A, THICKNESS=3.\n"
+                 "*SOLID SECTION, ELSET=UPPER, MATERIAL=A\n"
+                 "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
+                 "*CONTACT FORCE, CONTACT=P\n2.\n"
+                 "*FRICTION, CONTACT=P, LAW=NONLOCAL, KERNEL=CONSTANT,\n"
+                 "RADIUS=%s\n0.3\n*STEP\n*STATIC\n"
+                 "*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 1, 0.1\nTOP, 2\n"
+                 "*PRINT, TOTALS\n*END STEP\n",
+                 (const int[]){31, 33, 34}[k / 6],
+                 k / 3 % 2 ? "FIRST" : "SECOND", ends[k % 3]);
+    CK_EXIT(job_run(&j, ""), 0, j);
+    const double is = fabs(job_value(&j, "TOTALS", -1, "tangential"));
     ck_assert_msg(fabs(is - wanted) < 0.01 * wanted, "%d: %g, not %g", k, is,
                   wanted);
-    dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A uniform pressure p on a side of two blocks that are tied, of the height 2:
  * with k constant the ends take mu p rho/4 each, in space what the overlap of
  * the face a b with itself moved by d lacks on the mean over the disc of d: (a
  * + b) 4 rho/(3 pi) - rho^2/(2 pi). The joint takes nothing. */
-START_TEST(average_goes_on_across_a_tie) {
+TEST(average_goes_on_across_a_tie) {
   static const struct {
     const char *geo, *way, *held, *distance;
     double lost, near;
@@ -677,10 +594,9 @@ START_TEST(average_goes_on_across_a_tie) {
                {"pair", "", "2", "GEODESIC", 0.2, 1e-3},
                {"pair3", "0., ", "2, 3", "STRAIGHT", 0.483831, 0.012}};
   for (int k = 0; k < 3; ++k) {
-    char file[40];
     const int n = k < 2 ? 16 : 5;
-    job j = job_begin("joint");
-    snprintf(file, sizeof file, "tests/regression/mesh/%s.geo", cases[k].geo);
+    JOB j = job_begin("joint");
+    PRINTED(file, "tests/regression/mesh/%s.geo", cases[k].geo);
     job_copy(&j, file);
     job_write(&j, "joint.inp",
               "*PARAMETER\nN = %d\nM = %d\n*MESH, FILE=%s.geo\n"
@@ -697,55 +613,35 @@ START_TEST(average_goes_on_across_a_tie) {
               n, n + 2, cases[k].geo, cases[k].way, cases[k].way, cases[k].way,
               cases[k].distance, cases[k].held);
     ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-    dat t = job_table(&j, "TOTALS", -1);
-    const double is = dat_at(&t, 0, k < 2 ? "force_y" : "force_z");
+    const double is =
+        job_value(&j, "TOTALS", -1, k < 2 ? "force_y" : "force_z");
     const double wanted = 3 * (2 - cases[k].lost);
     ck_assert_msg(fabs(is - wanted) < cases[k].near * wanted, "%d: %g, not %g",
                   k, is, wanted);
-    dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* The tips of a crack under a uniform pressure carry nothing, but the pressure
  * goes on to them: with k constant R(p)/p is 1/2 there and grows by 1/(2 rho).
  */
-START_TEST(average_goes_on_to_the_tips) {
-  job j = job_begin("tips");
-  job_copy(&j, "input/crack/crack.geo");
-  job_write(&j, "tips.inp",
-            "*PARAMETER\nN = 8\nW = 3\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
-            "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
-            "*CRACK, NAME=C, GROUP=LINE\n*FRICTION, CONTACT=C, LAW=NONLOCAL,\n"
-            "KERNEL=CONSTANT, RADIUS=0.4\n0.3\n*STEP\n*STATIC\n*BOUNDARY\n"
-            "PLATE, 1\nBOTTOM, 2\n*DSLOAD\nTOP, P, 5.\n*PRINT, CONTACT\n"
-            "*END STEP\n");
+TEST(average_goes_on_to_the_tips) {
+  JOB j = job_with(
+      "tips", "input/crack/crack.geo",
+      "*PARAMETER\nN = 8\nW = 3\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+      "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
+      "*CRACK, NAME=C, GROUP=LINE\n*FRICTION, CONTACT=C, LAW=NONLOCAL,\n"
+      "KERNEL=CONSTANT, RADIUS=0.4\n0.3\n*STEP\n*STATIC\n*BOUNDARY\n"
+      "PLATE, 1\nBOTTOM, 2\n*DSLOAD\nTOP, P, 5.\n*PRINT, CONTACT\n"
+      "*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat t = job_table(&j, "CONTACT", -1);
+  DAT t = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < t.n_row; ++i) {
     const double left = 1 - fabs(dat_at(&t, i, "x"));
     ck_assert_double_eq_tol(
         dat_at(&t, i, "limit"),
         0.3 * dat_at(&t, i, "f_n") * fmin(1, 0.5 + left / 0.8), 1e-8);
   }
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
-          mirror_takes_the_edge_away, normalized_edges_keep_a_uniform_pressure,
-          limit_is_the_average_of_the_pressures,
-          zone_confines_friction_to_the_contact,
-          zone_that_stays_is_found_at_once,
-          node_that_comes_and_goes_has_no_friction,
-          small_radius_is_local_friction, only_the_nonlocal_law_pays,
-          mu_multiplies_the_average, every_method_gives_the_same_answer,
-          contacts_do_not_see_each_other,
-          square_base_has_the_mass_of_the_kernel, cone_is_exact_at_any_angle,
-          round_base_has_the_mass_of_the_kernel, given_forces_are_averaged,
-          velocity_form_has_the_same_zone, law_may_change_from_step_to_step,
-          slave_may_end_beyond_its_master, average_goes_on_across_a_tie,
-          average_goes_on_to_the_tips)
+UNIT_MAIN("nonlocal")

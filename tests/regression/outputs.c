@@ -3,7 +3,6 @@
  * no number of it and ends no run: short decks of every effect that has arrays
  * of its own, and where rounding is in doubt, with some or none of it.
  */
-#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/asked.h"
 #include "support/unit.h"
@@ -86,25 +85,22 @@ enum { N_DECK = sizeof decks / sizeof *decks };
 
 /* A deck as it is (NULL) or with other requests; the exit code. */
 static int run_deck(job *j, int k, const asked *a) {
-  char path[100], text[4000];
   static const mesh_change none;
-  int *number = NULL;
+  FREED int *number = NULL;
   *j = job_begin("deck");
-  snprintf(path, sizeof path, "%s/deck.msh", j->dir);
+  PRINTED(path, "%s/deck.msh", j->dir);
   FILE *f = fopen(path, "w");
   ck_assert_ptr_nonnull(f);
   ck_assert_int_eq(scene_mesh_write(f, decks[k].mesh, &none, &number), 1);
   fclose(f);
-  free(number);
-  snprintf(text, sizeof text, "*MESH, FILE=deck.msh\n%s", decks[k].deck);
-  char *other = a == NULL ? NULL : asked_deck(text, a);
+  PRINTED(text, "*MESH, FILE=deck.msh\n%s", decks[k].deck);
+  FREED char *other = a == NULL ? NULL : asked_deck(text, a);
   job_write(j, "deck.inp", "%s", other == NULL ? text : other);
-  free(other);
   return job_run(j, "--no-timing --quiet");
 }
 
 /* Nothing at all, and one combination after the other over the decks. */
-START_TEST(requests_change_no_number) {
+TESTS(requests_change_no_number, N_DECK) {
   const asked some[] = {{"", "HDF5=NO", "SOLVER=NO"},
                         {NULL, "HDF5=NO", NULL},
                         asked_number((5 * _i + 1) % asked_count()),
@@ -116,17 +112,15 @@ START_TEST(requests_change_no_number) {
                 whole.errors);
   for (size_t k = 0; k < sizeof some / sizeof *some; ++k) {
     const int found = run_deck(&j, _i, &some[k]);
-    char *other = asked_answer(&j);
+    FREED char *other = asked_answer(&j);
     asked_text(&some[k], text);
     ck_assert_msg(found == code, "%s: %s: exit %d: %s", decks[_i].name, text,
                   found, j.errors);
     if (asked_keeps(decks[_i].deck, &some[k])) ck_assert_str_eq(other, answer);
-    free(other);
     job_end(&j);
   }
   free(answer);
   job_end(&whole);
 }
-END_TEST
 
-UNIT_LOOP("outputs", requests_change_no_number, N_DECK)
+UNIT_MAIN_FOR("outputs", 10 * UNIT_SECONDS)

@@ -1,7 +1,6 @@
 /*
  * Bodies against each other: all methods, and bodies that pairs alone hold.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -18,29 +17,29 @@ static const char *const methods[] = {"LEMKE",  "SOR",      "AITKEN",
 /* A block narrower than the other, pressed and pushed, both elastic: the edges
  * slip, nodes beyond them have no partner; in space all of it. */
 static job run_punch(const char *method, int solid) {
-  job j = job_begin("punch");
-  job_copy(&j, solid ? "tests/regression/mesh/pair3.geo"
-                     : "tests/regression/mesh/pair.geo");
-  job_write(&j, "punch.inp",
-            "*PARAMETER\n%s\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
-            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
-            "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n"
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nBOTTOM, 1, %d\n*DSLOAD\n"
-            "TOP, P, \"3 + 2*x\"\nTOP, TX, 0.5\n"
-            "*SOLVER, METHOD=%s, TOL=1E-10\n"
-            "*PRINT, CONTACT, TOTALS\n*END STEP\n",
-            solid ? "N = 2\nM = 3" : "N = 8\nM = 7\nC = 0.3",
-            solid ? "pair3" : "pair", solid ? 3 : 2, method);
+  job j = job_with(
+      "punch",
+      solid ? "tests/regression/mesh/pair3.geo"
+            : "tests/regression/mesh/pair.geo",
+      "*PARAMETER\n%s\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
+      "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+      "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+      "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+      "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nBOTTOM, 1, %d\n*DSLOAD\n"
+      "TOP, P, \"3 + 2*x\"\nTOP, TX, 0.5\n"
+      "*SOLVER, METHOD=%s, TOL=1E-10\n"
+      "*PRINT, CONTACT, TOTALS\n*END STEP\n",
+      solid ? "N = 2\nM = 3" : "N = 8\nM = 7\nC = 0.3",
+      solid ? "pair3" : "pair", solid ? 3 : 2, method);
   int code = job_run(&j, "--no-timing");
   ck_assert_msg(code == 0, "%s: exit %d: %s", method, code, j.errors);
   return j;
 }
 
 static void check_method(const char *method, int solid, const dat *y) {
-  job j = run_punch(method, solid);
-  dat x = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
+  JOB j = run_punch(method, solid);
+  DAT x = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
   const double width = solid ? 1 : 0.4;
   int n_slip = 0;
   for (int i = 0; i < x.n_row; ++i) {
@@ -51,20 +50,14 @@ static void check_method(const char *method, int solid, const dat *y) {
   ck_assert_int_lt(n_slip, x.n_row);
   ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 4 * width, 1e-7);
   ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), 0.5 * width, 1e-7);
-  dat_free(&t);
-  dat_free(&x);
-  job_end(&j);
 }
 
-START_TEST(all_methods_agree) {
-  job j = run_punch("NEWTON", _i);
-  dat y = job_table(&j, "CONTACT", -1);
+TESTS(all_methods_agree, 2) {
+  JOB j = run_punch("NEWTON", _i);
+  DAT y = job_table(&j, "CONTACT", -1);
   for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k)
     check_method(methods[k], _i, &y);
-  dat_free(&y);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- bodies that pairs alone hold ----------------------------------------
  */
@@ -73,44 +66,37 @@ END_TEST
  * moves from F = (0.1 + mu)/(1 - 0.1 mu) on (NAFEMS CGS-4). */
 static int push_up(job *j, double factor) {
   const double mu = 0.3, F = factor * (0.1 + mu) / (1 - 0.1 * mu);
-  *j = job_begin("wedge");
-  job_copy(j, "tests/regression/mesh/pair.geo");
-  job_write(j, "wedge.inp",
-            "*PARAMETER\nN = 5\nM = 3\nA = \"atan(0.1)*180/pi\"\n"
-            "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n" PAIR
-            "*FRICTION, CONTACT=P, LAW=COULOMB\n%.17g\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*DLOAD\n"
-            "UPPER, BX, %.17g\nUPPER, BY, -1.\n*PRINT, TOTALS\n*END STEP\n",
-            mu, F);
+  *j = job_with("wedge", "tests/regression/mesh/pair.geo",
+                "*PARAMETER\nN = 5\nM = 3\nA = \"atan(0.1)*180/pi\"\n"
+                "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
+                "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+                "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n" PAIR
+                "*FRICTION, CONTACT=P, LAW=COULOMB\n%.17g\n"
+                "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*DLOAD\n"
+                "UPPER, BX, %.17g\nUPPER, BY, -1.\n*PRINT, TOTALS\n*END STEP\n",
+                mu, F);
   return job_run(j, "--no-timing");
 }
 
-START_TEST(wedge_moves_at_its_limit) {
-  job below, above;
+TEST(wedge_moves_at_its_limit) {
+  JOB below, above;
   ck_assert_int_eq(push_up(&below, 0.999), 0);
   ck_assert_int_eq(push_up(&above, 1.001), 6);
   ck_assert_ptr_nonnull(strstr(above.errors, "no equilibrium"));
-  job_end(&below);
-  job_end(&above);
 }
-END_TEST
 
 /* Blocks of 1 x 1 and the weight 1 on each other, the top one pushed by Q: it
  * slides from mu on, all others carry more. */
 static int push_stack(job *j, double Q) {
-  *j = job_begin("stack");
-  job_copy(j, "tests/regression/mesh/stack.geo");
-  job_write(j, "stack.inp",
-            "*MESH, FILE=stack.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
-            "*SOLID SECTION, ELSET=BLOCKS, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0, 0\n0, 1\n"
-            "*CONTACT, NAME=P0, GROUP=BOTTOM 1, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=P0, LAW=COULOMB\n0.3\n");
+  *j =
+      job_with("stack", "tests/regression/mesh/stack.geo",
+               "*MESH, FILE=stack.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
+               "*SOLID SECTION, ELSET=BLOCKS, MATERIAL=M\n"
+               "*OBSTACLE, NAME=O, TYPE=PLANE\n0, 0\n0, 1\n"
+               "*CONTACT, NAME=P0, GROUP=BOTTOM 1, OBSTACLE=O\n"
+               "*FRICTION, CONTACT=P0, LAW=COULOMB\n0.3\n");
   FILE *f;
-  char path[128];
-  snprintf(path, sizeof path, "%s/stack.inp", j->dir);
+  PRINTED(path, "%s/stack.inp", j->dir);
   f = fopen(path, "a");
   for (int k = 1; k < 5; ++k)
     fprintf(f,
@@ -125,84 +111,62 @@ static int push_stack(job *j, double Q) {
   return job_run(j, "--no-timing");
 }
 
-START_TEST(stack_stands_by_contact_alone) {
+TEST(stack_stands_by_contact_alone) {
   job j;
   ck_assert_int_eq(push_stack(&j, 0.299), 0);
-  dat t = job_table(&j, "TOTALS", -1);
+  DAT t = job_table(&j, "TOTALS", -1);
   ck_assert_int_eq(t.n_row, 5);
   for (int k = 0; k < 5; ++k) {
     ck_assert_double_eq_tol(dat_at(&t, k, "normal"), 5 - k, 1e-9);
     ck_assert_double_eq_tol(fabs(dat_at(&t, k, "force_x")), 0.299, 1e-9);
   }
-  dat_free(&t);
   job_end(&j);
   ck_assert_int_eq(push_stack(&j, 0.301), 6);
   job_end(&j);
 }
-END_TEST
 
 /* How far a hot block leans on a soft one when its load has ended: the forces
  * of the heat are far above those of the contact, and the tolerance with them.
  */
 static double lean(const char *method) {
-  job j = job_begin("soft");
-  job_copy(&j, "tests/regression/mesh/pair.geo");
-  job_write(&j, "soft.inp",
-            "*MESH, FILE=pair.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n*EXPANSION\n0.01\n"
-            "*MATERIAL, NAME=S\n*ELASTIC\n1E-2, 0.3\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=S\n" PAIR
-            "*FRICTION, CONTACT=P, LAW=TRESCA\n1E-4\n"
-            "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n"
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nBOTTOM, 1, 2\n"
-            "*TEMPERATURE\nUPPER, 1.\n*DSLOAD\nTOP, P, 1E-5, A\n"
-            "*SOLVER, METHOD=%s\n*PRINT, NODES\n*END STEP\n",
-            method);
+  JOB j = job_with("soft", "tests/regression/mesh/pair.geo",
+                   "*MESH, FILE=pair.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n*EXPANSION\n0.01\n"
+                   "*MATERIAL, NAME=S\n*ELASTIC\n1E-2, 0.3\n"
+                   "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+                   "*SOLID SECTION, ELSET=LOWER, MATERIAL=S\n" PAIR
+                   "*FRICTION, CONTACT=P, LAW=TRESCA\n1E-4\n"
+                   "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n"
+                   "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nBOTTOM, 1, 2\n"
+                   "*TEMPERATURE\nUPPER, 1.\n*DSLOAD\nTOP, P, 1E-5, A\n"
+                   "*SOLVER, METHOD=%s\n*PRINT, NODES\n*END STEP\n",
+                   method);
   ck_assert_msg(job_run(&j, "--quiet") == 0, "%s: %s", method, j.errors);
-  dat t = job_table(&j, "NODES", -1);
-  const double far = dat_max(&t, "u_x");
-  dat_free(&t);
-  job_end(&j);
-  return far;
+  return job_max(&j, "NODES", -1, "u_x");
 }
 
-START_TEST(body_above_a_soft_one_has_its_place_by_every_method) {
+TEST(body_above_a_soft_one_has_its_place_by_every_method) {
   const double far = lean("PCG");
   for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k)
     ck_assert_double_eq_tol(lean(methods[k]), far, 1e-8);
 }
-END_TEST
 
 /* Rounding of the stresses of the upper block presses the lower one, which has
  * none, where the load has ended. */
-START_TEST(rounding_of_stresses_is_no_doubt) {
+TESTS(rounding_of_stresses_is_no_doubt, 4) {
   static const char *const meshes[] = {"N = 4\nM = 7", "N = 3\nM = 5"};
-  job j = job_begin("ended");
-  job_copy(&j, "tests/regression/mesh/pair.geo");
-  job_write(&j, "ended.inp",
-            "*PARAMETER\n%s\n*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n*EXPANSION\n0.001\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n" PAIR
-            "INTERFERENCE, 0.01\n*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n"
-            "\"0.3 - 0.3*t\"\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
-            "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\nRIGHT, 1\n*DSLOAD\n"
-            "TOP, P, 20., A\n*TEMPERATURE\nUPPER, 0.1\n"
-            "*SOLVER, METHOD=%s\n*PRINT, TOTALS\n*END STEP\n",
-            meshes[_i % 2], _i < 2 ? "AUTO" : "LEMKE");
+  JOB j = job_with("ended", "tests/regression/mesh/pair.geo",
+                   "*PARAMETER\n%s\n*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n"
+                   "*ELASTIC\n1000., 0.3\n*EXPANSION\n0.001\n"
+                   "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+                   "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n" PAIR
+                   "INTERFERENCE, 0.01\n*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n"
+                   "\"0.3 - 0.3*t\"\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
+                   "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\nRIGHT, 1\n*DSLOAD\n"
+                   "TOP, P, 20., A\n*TEMPERATURE\nUPPER, 0.1\n"
+                   "*SOLVER, METHOD=%s\n*PRINT, TOTALS\n*END STEP\n",
+                   meshes[_i % 2], _i < 2 ? "AUTO" : "LEMKE");
   ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("pair_methods");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, all_methods_agree, 0, 2);
-  tcase_add_test(tests, wedge_moves_at_its_limit);
-  tcase_add_test(tests, body_above_a_soft_one_has_its_place_by_every_method);
-  tcase_add_loop_test(tests, rounding_of_stresses_is_no_doubt, 0, 4);
-  tcase_add_test(tests, stack_stands_by_contact_alone);
-  return unit_run("pair_methods", tests);
-}
+UNIT_MAIN("pair_methods")

@@ -3,18 +3,10 @@
  * integrators, laws, estimates, targets, reduction, files of condensed
  * problems; bodies between others, corners where pairs meet.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 const int job_without_fields = 1;
-
-static double value(const job *j, const char *kind, int k, const char *name) {
-  dat t = job_table(j, kind, k);
-  const double v = dat_at(&t, 0, name);
-  dat_free(&t);
-  return v;
-}
 
 /* ---- one scene, all options ----------------------------------------------
  */
@@ -26,20 +18,18 @@ typedef struct option {
 /* A block pressed on another and pushed to the right, the upper one narrower;
  * law: cards of the material, LAW=... of friction. */
 static int press(job *j, const option *o) {
-  *j = job_begin("press");
-  job_copy(j, "tests/regression/mesh/pair.geo");
-  job_write(j, "press.inp",
-            "*PARAMETER\nN = 8\nM = 7\nC = 0.2\n*MESH, FILE=pair.geo\n"
-            "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n%s"
-            "*MATERIAL, NAME=B\n*ELASTIC\n1500, 0.25\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=B\n"
-            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
-            "*FRICTION, CONTACT=P, LAW=%s*STEP\n%s"
-            "*BOUNDARY\nBOTTOM, 1, 2\n"
-            "*DSLOAD\nTOP, P, \"3 + 2*x\"\nTOP, TX, 0.4\n%s"
-            "*PRINT, CONTACT, TOTALS, ENERGY\n*END STEP\n",
-            o->cards, o->law, o->step, o->in_step);
+  *j = job_with("press", "tests/regression/mesh/pair.geo",
+                "*PARAMETER\nN = 8\nM = 7\nC = 0.2\n*MESH, FILE=pair.geo\n"
+                "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n%s"
+                "*MATERIAL, NAME=B\n*ELASTIC\n1500, 0.25\n"
+                "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
+                "*SOLID SECTION, ELSET=UPPER, MATERIAL=B\n"
+                "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+                "*FRICTION, CONTACT=P, LAW=%s*STEP\n%s"
+                "*BOUNDARY\nBOTTOM, 1, 2\n"
+                "*DSLOAD\nTOP, P, \"3 + 2*x\"\nTOP, TX, 0.4\n%s"
+                "*PRINT, CONTACT, TOTALS, ENERGY\n*END STEP\n",
+                o->cards, o->law, o->step, o->in_step);
   return job_run(j, "");
 }
 
@@ -69,24 +59,21 @@ static const option options[] = {
 
 /* The contact carries the loads 2.4 and 0.24 of the upper block, energies
  * balance. */
-START_TEST(loads_and_energies_balance) {
-  job j;
-  const int code = press(&j, &options[_i]);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "normal"), 2.4, 1e-8);
-  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "force_x"), 0.24, 1e-8);
-  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "force_y"), -2.4, 1e-8);
+TESTS(loads_and_energies_balance, sizeof options / sizeof *options) {
+  JOB j;
+  CK_EXIT(press(&j, &options[_i]), 0, j);
+  ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "normal"), 2.4, 1e-8);
+  ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "force_x"), 0.24, 1e-8);
+  ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "force_y"), -2.4, 1e-8);
   /* 3 + 2 x over [0.2, 0.8], 0.4 at y = 2 */
-  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "moment_z"),
+  ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "moment_z"),
                           -(0.9 + 0.336) - 2 * 0.24, 1e-8);
-  ck_assert_double_le(fabs(value(&j, "ENERGY", -1, "energy_defect_relative")),
-                      1e-10);
-  job_end(&j);
+  ck_assert_double_le(
+      fabs(job_value(&j, "ENERGY", -1, "energy_defect_relative")), 1e-10);
 }
-END_TEST
 
 /* Given normal forces do not balance the loads: who holds the bodies does. */
-START_TEST(given_forces_need_supports) {
+TEST(given_forces_need_supports) {
   job j;
   option o = {COULOMB "*CONTACT FORCE, CONTACT=P\n4.\n", INCREMENTS, "", ""};
   ck_assert_int_eq(press(&j, &o), 6);
@@ -94,11 +81,11 @@ START_TEST(given_forces_need_supports) {
   job_end(&j);
   o.in_step = "*BOUNDARY\nTOP, 2\n";
   ck_assert_int_eq(press(&j, &o), 0);
-  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "normal"), 4 * 0.6, 1e-12);
-  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "force_x"), 0.24, 1e-9);
+  ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "normal"), 4 * 0.6,
+                          1e-12);
+  ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "force_x"), 0.24, 1e-9);
   job_end(&j);
 }
-END_TEST
 
 /* ---- condensed problems in files ----------------------------------------- */
 
@@ -109,21 +96,20 @@ static int by_value(const void *a, const void *b) {
 
 /* A column in ascending order; caller frees. */
 static double *sorted(const job *j, const char *name, int *n) {
-  dat t = job_table(j, "CONTACT", -1);
+  DAT t = job_table(j, "CONTACT", -1);
   double *v = calloc((size_t)t.n_row, sizeof *v);
   *n = t.n_row;
   for (int i = 0; i < t.n_row; ++i) v[i] = dat_at(&t, i, name);
   qsort(v, (size_t)t.n_row, sizeof *v, by_value);
-  dat_free(&t);
   return v;
 }
 
 /* What the file of the last increment holds has the same forces. */
-START_TEST(condensed_problem_has_the_same_forces) {
+TEST(condensed_problem_has_the_same_forces) {
   static const char *const names[] = {"f_n", "f_t", "gap"};
   const option o = {COULOMB, INCREMENTS, "",
                     "*OUTPUT, CONDENSED=FCLIB\n*SOLVER, TOL=1E-13\n"};
-  job j;
+  JOB j;
   double *mesh_forces[3];
   int n[3], m;
   ck_assert_int_eq(press(&j, &o), 0);
@@ -134,16 +120,13 @@ START_TEST(condensed_problem_has_the_same_forces) {
             "*STATIC\n*SOLVER, TOL=1E-13\n*PRINT, CONTACT\n*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   for (int k = 0; k < 3; ++k) {
-    double *v = sorted(&j, names[k], &m);
+    FREED double *v = sorted(&j, names[k], &m);
     ck_assert_int_eq(m, n[k]);
     for (int i = 0; i < m; ++i)
       ck_assert_double_eq_tol(v[i], mesh_forces[k][i], 1e-11);
-    free(v);
     free(mesh_forces[k]);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* ---- estimates ----------------------------------------------------------- */
 
@@ -157,87 +140,76 @@ END_TEST
 /* nu = 0, u = A (sin x cos(y - 1), cos x sin(y - 1)): at y = 1 no shear, the
  * pressure -E A cos x. Estimated over true error near 1, both with the first
  * order. */
-START_TEST(error_of_the_mesh_is_estimated) {
+TEST(error_of_the_mesh_is_estimated) {
   static const char *const words[] = {"-D N=8 -D M=11", "-D N=16 -D M=12",
                                       "-D N=16 -D M=22"};
   double is[3];
   for (int k = 0; k < 3; ++k) {
-    job j = job_begin("smooth");
-    job_copy(&j, "tests/regression/mesh/pair.geo");
-    job_write(&j, "smooth.inp",
-              "*PARAMETER\nA = -0.01\nE = 1000.\n*MESH, FILE=pair.geo\n"
-              "*MATERIAL, NAME=M\n*ELASTIC\n<E>, 0\n"
-              "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-              "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
-              "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"
-              "*REFERENCE\nu_x, \"A*sin(x)*cos(y - 1)\"\n"
-              "u_y, \"A*cos(x)*sin(y - 1)\"\npressure, \"-E*A*cos(x)\"\n"
-              "*STEP\n*STATIC\n*BOUNDARY\n" SAME("LEFT") SAME("RIGHT")
-                  SAME("TOP") SAME("BOTTOM") "*DLOAD\n" FORCE("LOWER")
-                      FORCE("UPPER") "*ACCURACY, MESH=YES\n*END STEP\n");
+    JOB j = job_with("smooth", "tests/regression/mesh/pair.geo",
+                     "*PARAMETER\nA = -0.01\nE = 1000.\n*MESH, FILE=pair.geo\n"
+                     "*MATERIAL, NAME=M\n*ELASTIC\n<E>, 0\n"
+                     "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+                     "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+                     "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"
+                     "*REFERENCE\nu_x, \"A*sin(x)*cos(y - 1)\"\n"
+                     "u_y, \"A*cos(x)*sin(y - 1)\"\npressure, \"-E*A*cos(x)\"\n"
+                     "*STEP\n*STATIC\n*BOUNDARY\n" SAME("LEFT") SAME("RIGHT")
+                         SAME("TOP") SAME("BOTTOM") "*DLOAD\n" FORCE("LOWER")
+                             FORCE("UPPER") "*ACCURACY, MESH=YES\n*END STEP\n");
     ck_assert_msg(job_run(&j, words[k]) == 0, "%s", j.errors);
     is[k] = job_told(&j, "true_error_percent");
     const double ratio = job_told(&j, "mesh_error_percent") / is[k];
     ck_assert_msg(ratio > 0.9 && ratio < 1.1, "effectivity %g", ratio);
-    job_end(&j);
   }
   ck_assert_double_eq_tol(is[2] / is[0], 0.5, 0.05);
 }
-END_TEST
 
 /* ---- many bodies --------------------------------------------------------- */
 
 /* Two blocks between base and roof, pressed from above by 3 and together by 1,
  * with friction 0.3 in five pairs. */
 static int press_four(job *j, const char *pairs) {
-  *j = job_begin("four");
-  job_copy(j, "tests/regression/mesh/four.geo");
-  job_write(j, "four.inp",
-            "*MESH, FILE=four.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODIES, MATERIAL=M\n%s"
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nFLOOR, 1, 2\n*DSLOAD\n"
-            "TOP, P, 3.\nLEFT OUT, P, 1.\nRIGHT OUT, P, 1.\n"
-            "*PRINT, TOTALS, NODES, ENERGY\n*END STEP\n",
-            pairs);
+  *j =
+      job_with("four", "tests/regression/mesh/four.geo",
+               "*MESH, FILE=four.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+               "*SOLID SECTION, ELSET=BODIES, MATERIAL=M\n%s"
+               "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nFLOOR, 1, 2\n*DSLOAD\n"
+               "TOP, P, 3.\nLEFT OUT, P, 1.\nRIGHT OUT, P, 1.\n"
+               "*PRINT, TOTALS, NODES, ENERGY\n*END STEP\n",
+               pairs);
   return job_run(j, "");
 }
 
 /* Plates of thickness 1 and 3 touch over 1: the friction of a given limit, and
  * the pressure, whichever is the slave. Another contact comes first. */
-START_TEST(plates_touch_over_the_thinner_one) {
+TEST(plates_touch_over_the_thinner_one) {
   for (int k = 0; k < 4; ++k) {
-    job j = job_begin("plates");
-    job_copy(&j, "tests/regression/mesh/pair.geo");
-    job_write(&j, "plates.inp",
-              "*PARAMETER\nN = 8\nM = 7\nC = 0.2\n*MESH, FILE=pair.geo\n"
-              "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.\n"
-              "*SOLID SECTION, ELSET=LOWER, MATERIAL=A, THICKNESS=%d\n"
-              "*SOLID SECTION, ELSET=UPPER, MATERIAL=A, THICKNESS=%d\n"
-              "*OBSTACLE, NAME=FAR, TYPE=GAP\n9.\n"
-              "*CONTACT, NAME=LID, GROUP=TOP, OBSTACLE=FAR\n"
-              "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
-              "*FRICTION, CONTACT=P, LAW=TRESCA\n1.\n*STEP\n*STATIC\n"
-              "*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 1, 0.1\n*DSLOAD\nTOP, P, 10\n"
-              "*PRINT, TOTALS, ZONES\n*END STEP\n",
-              k % 2 ? 1 : 3, k % 2 ? 3 : 1, k < 2 ? "FIRST" : "SECOND");
-    int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-    dat t = job_table(&j, "TOTALS", -1);
+    JOB j = job_with(
+        "plates", "tests/regression/mesh/pair.geo",
+        "*PARAMETER\nN = 8\nM = 7\nC = 0.2\n*MESH, FILE=pair.geo\n"
+        "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.\n"
+        "*SOLID SECTION, ELSET=LOWER, MATERIAL=A, THICKNESS=%d\n"
+        "*SOLID SECTION, ELSET=UPPER, MATERIAL=A, THICKNESS=%d\n"
+        "*OBSTACLE, NAME=FAR, TYPE=GAP\n9.\n"
+        "*CONTACT, NAME=LID, GROUP=TOP, OBSTACLE=FAR\n"
+        "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
+        "*FRICTION, CONTACT=P, LAW=TRESCA\n1.\n*STEP\n*STATIC\n"
+        "*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 1, 0.1\n*DSLOAD\nTOP, P, 10\n"
+        "*PRINT, TOTALS, ZONES\n*END STEP\n",
+        k % 2 ? 1 : 3, k % 2 ? 3 : 1, k < 2 ? "FIRST" : "SECOND");
+    CK_EXIT(job_run(&j, ""), 0, j);
+    DAT t = job_table(&j, "TOTALS", -1);
     ck_assert_double_eq_tol(dat_at(&t, 1, "normal"), k % 2 ? 18 : 6, 1e-9);
     ck_assert_double_eq_tol(fabs(dat_at(&t, 1, "tangential")), 0.6, 1e-9);
     ck_assert_double_le(dat_at(&t, 1, "closed_area"), 0.6 + 1e-9);
-    dat_free(&t);
-    dat z = job_table(&j, "ZONES", -1);
+    DAT z = job_table(&j, "ZONES", -1);
     ck_assert_int_gt(z.n_row, 1);
     for (int i = 0; i < z.n_row; ++i) /* the first is that of LID */
       ck_assert_double_eq_tol(
           dat_at(&z, i, "area"),
           (i == 0 && k % 2 ? 3 : 1) * dat_at(&z, i, "extent"), 1e-9);
-    dat_free(&z);
-    job_end(&j);
   }
 }
-END_TEST
 
 #define FIVE(name, groups, options)                                            \
   "*CONTACT PAIR, NAME=" name options "\n" groups "\n*FRICTION, CONTACT=" name \
@@ -246,7 +218,7 @@ END_TEST
 /* The base is slave of two pairs side by side, the roof too; the blocks are
  * masters of all; or slaves below and master above; or one pair for both. Each
  * body is in equilibrium. */
-START_TEST(bodies_between_others_balance) {
+TESTS(bodies_between_others_balance, 3) {
   static const char *const pairs[] = {
       FIVE("A", "BASE, LEFT DOWN", "") FIVE("B", "BASE, RIGHT DOWN", "")
           FIVE("C", "LEFT UP, ROOF", "") FIVE("D", "RIGHT UP, ROOF", "")
@@ -259,10 +231,9 @@ START_TEST(bodies_between_others_balance) {
       FIVE("A", "DOWN, BASE", "") FIVE("C", "LEFT UP, ROOF", ", SLAVE=FIRST")
           FIVE("D", "RIGHT UP, ROOF", ", SLAVE=SECOND")
               FIVE("E", "LEFT IN, RIGHT IN", ", SLAVE=FIRST")};
-  job j;
-  const int code = press_four(&j, pairs[_i]);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat n = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
+  JOB j;
+  CK_EXIT(press_four(&j, pairs[_i]), 0, j);
+  DAT n = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
   double up = 0;
   for (int k = 0; k < t.n_row; ++k) /* all but the last stand upright */
     if (k < t.n_row - 1) up += dat_at(&t, k, "normal");
@@ -277,61 +248,51 @@ START_TEST(bodies_between_others_balance) {
   dat_free(&t);
   job_end(&j);
 }
-END_TEST
 
 /* At (1, 2) the roof, the right and the left block follow each other. */
-START_TEST(circle_of_slaves_names_its_pairs) {
+TEST(circle_of_slaves_names_its_pairs) {
   static const char *const last[] = {
       FIVE("E", "RIGHT IN, LEFT IN", ", SLAVE=FIRST"),
       FIVE("E", "RIGHT IN, LEFT IN", ", SLAVE=SECOND")};
   static const char rest[] = FIVE("C", "LEFT UP, ROOF", ", SLAVE=FIRST")
       FIVE("D", "ROOF, RIGHT UP", ", SLAVE=FIRST") FIVE("A", "BASE, DOWN", "");
   for (int k = 0; k < 2; ++k) {
-    job j;
-    char pairs[800];
-    snprintf(pairs, sizeof pairs, "%s%s", rest, last[k]);
-    const int code = press_four(&j, pairs);
-    ck_assert_msg(code == (k == 0 ? 2 : 0), "exit %d: %s", code, j.errors);
+    JOB j;
+    PRINTED(pairs, "%s%s", rest, last[k]);
+    CK_EXIT(press_four(&j, pairs), (k == 0 ? 2 : 0), j);
     ck_assert_int_eq(strstr(j.errors, "P4027") != NULL, k == 0);
     static const char *const told[] = {"C of line 6", "D of line 10",
                                        "E of line 18"};
     for (int i = 0; i < 3 && k == 0; ++i)
       ck_assert_msg(strstr(j.errors, told[i]) != NULL, "%s", j.errors);
     ck_assert_int_eq(strstr(j.errors, "A of line") != NULL, 0);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A dovetail pulled by 0.8 is held by both claws along the normals (3, 1) of
  * its sides: N = 0.8/(2/sqrt(10)) each. Pushed, nothing holds it. */
 static int load_dovetail(job *j, double traction) {
-  *j = job_begin("dovetail");
-  job_copy(j, "tests/regression/mesh/dovetail.geo");
-  job_write(j, "dovetail.inp",
-            "*MESH, FILE=dovetail.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E4, 0.3\n"
-            "*SOLID SECTION, ELSET=BODIES, MATERIAL=M\n"
-            "*CONTACT PAIR, NAME=L\nLEFT, LEFT CLAW\n"
-            "*CONTACT PAIR, NAME=R\nRIGHT, RIGHT CLAW\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nWALLS, 1, 2\n*DSLOAD\nTOP, TY, %g\n"
-            "*PRINT, TOTALS\n*END STEP\n",
-            traction);
+  *j = job_with(
+      "dovetail", "tests/regression/mesh/dovetail.geo",
+      "*MESH, FILE=dovetail.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E4, 0.3\n"
+      "*SOLID SECTION, ELSET=BODIES, MATERIAL=M\n"
+      "*CONTACT PAIR, NAME=L\nLEFT, LEFT CLAW\n"
+      "*CONTACT PAIR, NAME=R\nRIGHT, RIGHT CLAW\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nWALLS, 1, 2\n*DSLOAD\nTOP, TY, %g\n"
+      "*PRINT, TOTALS\n*END STEP\n",
+      traction);
   return job_run(j, "--no-timing");
 }
 
-START_TEST(dovetail_holds_one_way) {
-  job pulled, pushed;
+TEST(dovetail_holds_one_way) {
+  JOB pulled, pushed;
   ck_assert_int_eq(load_dovetail(&pulled, 1), 0);
   ck_assert_int_eq(load_dovetail(&pushed, -1), 6);
   ck_assert_ptr_nonnull(strstr(pushed.errors, "no equilibrium"));
-  dat t = job_table(&pulled, "TOTALS", -1);
+  DAT t = job_table(&pulled, "TOTALS", -1);
   for (int i = 0; i < 2; ++i)
     ck_assert_double_eq_tol(dat_at(&t, i, "normal"), 0.4 * sqrt(10.0), 1e-9);
-  dat_free(&t);
-  job_end(&pulled);
-  job_end(&pushed);
 }
-END_TEST
 
 /* ---- slave of two materials -----------------------------------------------
  */
@@ -341,7 +302,7 @@ END_TEST
  * That of a cubic material is (9 C_11 + 6 C_12 + 12 C_44)/15, C_nnnn in the
  * mean over all directions n (Voigt 1889).
  */
-START_TEST(modulus_of_a_surface_is_the_mean_of_its_faces) {
+TESTS(modulus_of_a_surface_is_the_mean_of_its_faces, 10) {
   static const struct {
     double left, right;
     const char *told;
@@ -362,7 +323,7 @@ START_TEST(modulus_of_a_surface_is_the_mean_of_its_faces) {
                      "0, 0, %g, 0, 0, 0, 0,\n%g, 0, 0, 0, 0, 0, %g\n",
             C, C, C, s, s, s);
   }
-  job j = job_begin("mean");
+  JOB j = job_begin("mean");
   job_write(&j, "mean.msh",
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
             "$PhysicalNames\n6\n1 1 \"BOTTOM\"\n"
@@ -390,13 +351,10 @@ START_TEST(modulus_of_a_surface_is_the_mean_of_its_faces) {
       "*END STEP\n",
       elastic[0], elastic[1]);
   ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
-  char *text = job_file(&j, "lst");
+  FREED char *text = job_file(&j, "lst");
   ck_assert_msg(strstr(text, cases[_i].told) != NULL, "%s: %.60s",
                 cases[_i].told, strstr(text, "slave"));
-  free(text);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- nodes that are left out ----------------------------------------------
  */
@@ -404,19 +362,18 @@ END_TEST
 /* A block on another, of which slave nodes carry nothing themselves: one that
  * supports hold, those outside of the master but for 1e-4 of an edge. */
 static int leave_out(job *j, const char *shift, const char *more) {
-  *j = job_begin("left");
-  job_copy(j, "tests/regression/mesh/pair.geo");
-  job_write(j, "left.inp",
-            "*PARAMETER\nN = 4\nM = 7\nC = %s\n*MESH, FILE=pair.geo\n"
-            "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=A\n"
-            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
-            "*FRICTION, CONTACT=P, LAW=COULOMB\n0.1\n"
-            "*WEAR, CONTACT=P, COEFFICIENT=1.E-4\n*STEP\n*QUASISTATIC\n1., 1.\n"
-            "*BOUNDARY\nBOTTOM, 1, 2\n%s*DSLOAD\nTOP, P, \"3 + 2*x\"\n"
-            "TOP, TX, 0.8\n*PRINT, CONTACT, TOTALS, WEAR\n*END STEP\n",
-            shift, more);
+  *j = job_with(
+      "left", "tests/regression/mesh/pair.geo",
+      "*PARAMETER\nN = 4\nM = 7\nC = %s\n*MESH, FILE=pair.geo\n"
+      "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n"
+      "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
+      "*SOLID SECTION, ELSET=UPPER, MATERIAL=A\n"
+      "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+      "*FRICTION, CONTACT=P, LAW=COULOMB\n0.1\n"
+      "*WEAR, CONTACT=P, COEFFICIENT=1.E-4\n*STEP\n*QUASISTATIC\n1., 1.\n"
+      "*BOUNDARY\nBOTTOM, 1, 2\n%s*DSLOAD\nTOP, P, \"3 + 2*x\"\n"
+      "TOP, TX, 0.8\n*PRINT, CONTACT, TOTALS, WEAR\n*END STEP\n",
+      shift, more);
   return job_run(j, "");
 }
 
@@ -429,8 +386,8 @@ static void check_sum(const dat *rows, const char *column, const dat *all,
 /* Rows add up to the resultants, and have the law of friction and of wear
  * each. */
 static void check_rows(const job *j) {
-  dat c = job_table(j, "CONTACT", -1), all = job_table(j, "TOTALS", -1);
-  dat w = job_table(j, "WEAR", -1);
+  DAT c = job_table(j, "CONTACT", -1), all = job_table(j, "TOTALS", -1);
+  DAT w = job_table(j, "WEAR", -1);
   check_sum(&c, "f_n", &all, "normal");
   check_sum(&c, "f_t", &all, "tangential");
   check_sum(&c, "f_x", &all, "force_x");
@@ -451,27 +408,21 @@ static void check_rows(const job *j) {
   }
   ck_assert_double_gt(volume, 1e-8);
   ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), volume, 1e-12);
-  dat_free(&w);
-  dat_free(&c);
-  dat_free(&all);
 }
 
-START_TEST(rows_add_up_to_the_resultant) {
+TESTS(rows_add_up_to_the_resultant, 2) {
   static const struct {
     const char *shift, *more;
   } scenes[] = {{"0.2499", "TOP, 1, 1, 0.03\n"}, {"0.", "LEFT, 1, 2\n"}};
-  job j;
-  const int code = leave_out(&j, scenes[_i].shift, scenes[_i].more);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  JOB j;
+  CK_EXIT(leave_out(&j, scenes[_i].shift, scenes[_i].more), 0, j);
   check_rows(&j);
-  job_end(&j);
 }
-END_TEST
 
 /* Rows with what they carry for a node that a support holds at its place: gap,
  * motion, pressure, wear are those of the others. Blocks of height 1, E = 1000,
  * nu = 0, apart in the mesh; the upper one is moved by (along, up). */
-START_TEST(rows_beside_a_held_node_are_as_others) {
+TESTS(rows_beside_a_held_node_are_as_others, 5) {
   static const struct {
     const char *line, *more;
     double mesh, gap, along, up;
@@ -485,7 +436,7 @@ START_TEST(rows_beside_a_held_node_are_as_others) {
   const double p = 500.0 * (apart - cases[_i].gap - cases[_i].up);
   const double low = 1.0 + cases[_i].mesh;
   const int step = strlen(cases[_i].more) > 0;
-  job j = job_begin("beside");
+  JOB j = job_begin("beside");
   job_write(&j, "beside.msh",
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
             "$PhysicalNames\n7\n0 1 \"HELD\"\n1 2 \"BOTTOM\"\n"
@@ -513,8 +464,8 @@ START_TEST(rows_beside_a_held_node_are_as_others) {
             cases[_i].more, cases[_i].line, -p / 1000.0, cases[_i].along,
             cases[_i].up);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat c = job_table(&j, "CONTACT", step), all = job_table(&j, "TOTALS", step);
-  dat w = job_table(&j, "WEAR", step), f = job_table(&j, "REACTIONS", step);
+  DAT c = job_table(&j, "CONTACT", step), all = job_table(&j, "TOTALS", step);
+  DAT w = job_table(&j, "WEAR", step), f = job_table(&j, "REACTIONS", step);
   const int slides = strstr(cases[_i].line, "FRICTION") != NULL;
   const double shear = fabs(dat_at(&all, 0, "tangential"));
   ck_assert_int_eq(c.n_row, 2);
@@ -533,54 +484,41 @@ START_TEST(rows_beside_a_held_node_are_as_others) {
   for (int i = 0; i < f.n_row && !slides; ++i)
     if (dat_at(&f, i, "node_no") == 4)
       ck_assert_double_eq_tol(dat_at(&f, i, "reaction_y"), 0, 1e-12);
-  dat_free(&f);
-  dat_free(&w);
-  dat_free(&all);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* Where two masters meet within a face of the slave, its nodes act on both: a
  * block of nu = 0 on held floors, 0.001 lower, has one pressure. */
-START_TEST(masters_side_by_side_are_one_floor) {
+TESTS(masters_side_by_side_are_one_floor, 6) {
   static const double ends[] = {0.81, 0.9, 0.95, 1.0, 1.19, 1.2};
   const char *more = _i % 2 ? "CLEARANCE, 0.001\n" : "";
-  job j = job_begin("floors");
-  job_copy(&j, "tests/regression/mesh/floors.geo");
-  job_write(&j, "floors.inp",
-            "*PARAMETER\nC = %g\n*MESH, FILE=floors.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BLOCK, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=FLOORS, MATERIAL=M\n"
-            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, LEFT FLOOR\n%s"
-            "*CONTACT PAIR, NAME=Q, SLAVE=FIRST\nUNDER, RIGHT FLOOR\n%s"
-            "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nFLOORS, 1, 2\n"
-            "TOP, 1\nTOP, 2, 2, %g\n*PRINT, CONTACT, TOTALS\n*END STEP\n",
-            ends[_i], more, more, _i % 2 ? -3e-3 : -2e-3);
+  JOB j =
+      job_with("floors", "tests/regression/mesh/floors.geo",
+               "*PARAMETER\nC = %g\n*MESH, FILE=floors.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BLOCK, MATERIAL=M\n"
+               "*SOLID SECTION, ELSET=FLOORS, MATERIAL=M\n"
+               "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, LEFT FLOOR\n%s"
+               "*CONTACT PAIR, NAME=Q, SLAVE=FIRST\nUNDER, RIGHT FLOOR\n%s"
+               "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nFLOORS, 1, 2\n"
+               "TOP, 1\nTOP, 2, 2, %g\n*PRINT, CONTACT, TOTALS\n*END STEP\n",
+               ends[_i], more, more, _i % 2 ? -3e-3 : -2e-3);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
+  DAT c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
   ck_assert_double_eq_tol(dat_sum(&c, "f_n"), 2, 1e-12);
   for (int i = 0; i < c.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), 1, 1e-11);
   ck_assert_double_eq_tol(dat_sum(&all, "closed_area"), 2, 1e-12);
   ck_assert_double_eq_tol(dat_sum(&all, "moment_z"), 2, 1e-12);
-  dat_free(&all);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* Over a step the lower floor, which is not touched, changes nothing, whichever
  * axis the step is along. */
-START_TEST(lower_master_beyond_a_step_is_not_met) {
+TESTS(lower_master_beyond_a_step_is_not_met, 2) {
   static const char *const held[] = {"TOP, 1\nTOP, 2, 2, -2E-3\n",
                                      "TOP, 2\nTOP, 1, 1, 2E-3\n"};
   double normal[2];
   for (int k = 0; k < 2; ++k) {
-    job j = job_begin("step");
-    job_copy(&j, "tests/regression/mesh/floors.geo");
-    job_write(
-        &j, "step.inp",
+    JOB j = job_with(
+        "step", "tests/regression/mesh/floors.geo",
         "*PARAMETER\nC = 0.7\nS = 0.01\nTURN = %d\n*MESH, FILE=floors.geo\n"
         "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
         "*SOLID SECTION, ELSET=BLOCK, MATERIAL=M\n"
@@ -591,15 +529,11 @@ START_TEST(lower_master_beyond_a_step_is_not_met) {
         _i, k ? "*CONTACT PAIR, NAME=Q, SLAVE=FIRST\nUNDER, RIGHT FLOOR\n" : "",
         held[_i]);
     ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-    dat all = job_table(&j, "TOTALS", -1);
-    normal[k] = dat_at(&all, 0, "normal");
-    dat_free(&all);
-    job_end(&j);
+    normal[k] = job_value(&j, "TOTALS", -1, "normal");
   }
   ck_assert_double_gt(normal[0], 0.5);
   ck_assert_double_eq_tol(normal[1], normal[0], 1e-12);
 }
-END_TEST
 
 /* Two blocks tied side by side on a plane. */
 typedef struct side {
@@ -654,14 +588,14 @@ static int press_side(job *j, const side *of, double rise) {
 /* The blocks stand as one: the area of the tied nodes is that of their masters,
  * also where these have another contact, or of the others of the face where the
  * masters have none with that normal. */
-START_TEST(tied_nodes_leave_their_area_in_a_contact) {
+TESTS(tied_nodes_leave_their_area_in_a_contact, 9) {
   const side *of = &sides[_i];
   const int coarse = _i == 3, both = *of->other == 'H';
-  job j;
+  JOB j;
   ck_assert_msg(press_side(&j, of, 0) == 0, "%s", j.errors);
   ck_assert_int_eq(strstr(j.errors, "P4002") != NULL, *of->other == 'O');
   ck_assert_int_eq(strstr(j.errors, "P4035") != NULL, coarse);
-  dat c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
+  DAT c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
   ck_assert_double_eq_tol(dat_at(&all, 0, "closed_area"), of->area, 1e-12);
   for (int i = 0; i <= both; ++i)
     if (!alone(of))
@@ -674,81 +608,44 @@ START_TEST(tied_nodes_leave_their_area_in_a_contact) {
     ck_assert_double_eq_tol(dat_sum(&c, "limit"), alone(of) ? 0.25 : 0.5,
                             1e-12);
   }
-  dat_free(&all);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* The second foot rises by 22 degrees: with the same obstacle that is one
  * surface, with another one it is not. */
-START_TEST(tied_area_goes_round_a_blunt_corner) {
+TESTS(tied_area_goes_round_a_blunt_corner, 2) {
   static const side feet[] = {
       {"SLAVE=FIRST", "FOOT", "HEEL, OBSTACLE=O", 4, 0.875},
       {"SLAVE=FIRST", "FOOT", "HEEL, OBSTACLE=Q", 4, 1}};
-  job j;
+  JOB j;
   ck_assert_msg(press_side(&j, &feet[_i], 0.4) == 0, "%s", j.errors);
-  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "closed_area"), feet[_i].area,
-                          1e-12);
-  job_end(&j);
+  ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "closed_area"),
+                          feet[_i].area, 1e-12);
 }
-END_TEST
 
 /* The pair of a tie again. */
-START_TEST(contact_of_tied_faces_is_told) {
-  job j = job_begin("tied");
-  job_copy(&j, "tests/regression/mesh/pair.geo");
-  job_write(&j, "tied.inp",
-            "*PARAMETER\nN = 4\nM = 4\n*MESH, FILE=pair.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
-            "*TIE, NAME=T, SLAVE=FIRST\nUNDER, OVER\n"
-            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*END STEP\n");
+TEST(contact_of_tied_faces_is_told) {
+  JOB j = job_with("tied", "tests/regression/mesh/pair.geo",
+                   "*PARAMETER\nN = 4\nM = 4\n*MESH, FILE=pair.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+                   "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+                   "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+                   "*TIE, NAME=T, SLAVE=FIRST\nUNDER, OVER\n"
+                   "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+                   "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 2);
   ck_assert_ptr_nonnull(strstr(
       j.errors, "P4033: *CONTACT PAIR P: 4 of 4 faces of the slave UNDER"));
   ck_assert_ptr_nonnull(strstr(j.errors, "left out of contact: 5"));
-  job_end(&j);
 }
-END_TEST
 
 /* The nodes of a tip have no row. */
-START_TEST(rows_of_a_crack_add_up_to_its_resultant) {
-  job j;
+TEST(rows_of_a_crack_add_up_to_its_resultant) {
+  JOB j;
   ck_assert_int_eq(job_run_with(&j, "input/crack/partly_closed", "", 0, ""), 0);
-  dat c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
+  DAT c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
   ck_assert_double_gt(dat_at(&all, 0, "normal"), 0.1);
   check_sum(&c, "f_n", &all, "normal");
   check_sum(&c, "f_y", &all, "force_y");
-  dat_free(&c);
-  dat_free(&all);
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("pair_options");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, loads_and_energies_balance, 0,
-                      sizeof options / sizeof *options);
-  tcase_add_test(tests, given_forces_need_supports);
-  tcase_add_test(tests, plates_touch_over_the_thinner_one);
-  tcase_add_test(tests, condensed_problem_has_the_same_forces);
-  tcase_add_test(tests, error_of_the_mesh_is_estimated);
-  tcase_add_loop_test(tests, bodies_between_others_balance, 0, 3);
-  tcase_add_test(tests, circle_of_slaves_names_its_pairs);
-  tcase_add_test(tests, dovetail_holds_one_way);
-  tcase_add_loop_test(tests, modulus_of_a_surface_is_the_mean_of_its_faces, 0,
-                      10);
-  tcase_add_loop_test(tests, rows_add_up_to_the_resultant, 0, 2);
-  tcase_add_loop_test(tests, rows_beside_a_held_node_are_as_others, 0, 5);
-  tcase_add_loop_test(tests, masters_side_by_side_are_one_floor, 0, 6);
-  tcase_add_loop_test(tests, lower_master_beyond_a_step_is_not_met, 0, 2);
-  tcase_add_loop_test(tests, tied_nodes_leave_their_area_in_a_contact, 0, 9);
-  tcase_add_loop_test(tests, tied_area_goes_round_a_blunt_corner, 0, 2);
-  tcase_add_test(tests, contact_of_tied_faces_is_told);
-  tcase_add_test(tests, rows_of_a_crack_add_up_to_its_resultant);
-  return unit_run("pair_options", tests);
-}
+UNIT_MAIN("pair_options")

@@ -2,7 +2,6 @@
  * Pairs of bodies that supports hold or drive along the contact: friction, wear
  * and the slave that AUTO chooses.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -11,9 +10,9 @@ const int job_without_fields = 1;
 /* Two wedges without friction on each other, the lower one held at its right
  * side and its foot, the upper one at its left side: action is reaction, and
  * the supports bear the slope of the load. */
-START_TEST(wedges_between_walls_bear_the_slope_of_the_load) {
+TESTS(wedges_between_walls_bear_the_slope_of_the_load, 2) {
   const double slope = 0.1, load = 5.0;
-  job j = job_begin("wedges");
+  JOB j = job_begin("wedges");
   job_write(&j, "wedges.geo",
             "Macro Quad\n"
             "  q = newp; Point(q) = {0, y[0], 0}; Point(q+1) = {1, y[1], 0};\n"
@@ -43,7 +42,7 @@ START_TEST(wedges_between_walls_bear_the_slope_of_the_load) {
             "*PRINT, TOTALS, NODES, REACTIONS\n*END STEP\n",
             _i ? "SECOND" : "FIRST", load);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat all = job_table(&j, "TOTALS", -1), s = job_table(&j, "REACTIONS", -1);
+  DAT all = job_table(&j, "TOTALS", -1), s = job_table(&j, "REACTIONS", -1);
   ck_assert_double_eq_tol(dat_sum(&s, "reaction_x"), 0.0, 1e-11);
   ck_assert_double_eq_tol(fabs(dat_at(&all, 0, "force_x")), slope * load,
                           1e-11);
@@ -51,16 +50,12 @@ START_TEST(wedges_between_walls_bear_the_slope_of_the_load) {
   ck_assert_double_eq_tol(dat_at(&all, 0, "normal"), load * hypot(1, slope),
                           1e-11);
   ck_assert_double_eq_tol(dat_at(&all, 0, "tangential"), 0.0, 1e-11);
-  dat_free(&all);
-  dat_free(&s);
-  job_end(&j);
 }
-END_TEST
 
 /* A slider that its side, or all of it, drives over an elastic body drags it by
  * mu N; two bodies held along the contact wear by their motion, whichever is
  * the slave. */
-START_TEST(driven_bodies_slide_on_each_other) {
+TESTS(driven_bodies_slide_on_each_other, 8) {
   static const struct {
     const char *pair, *supports;
     double drag, depth;
@@ -74,7 +69,7 @@ START_TEST(driven_bodies_slide_on_each_other) {
       {", SLAVE=SECOND", "TOP, 1, 2\nLOWER, 1, 1, 0.02\n", 0.15, 0},
       {", SLAVE=FIRST", "TOP, 1, 2\nLOWER, 1, 1, 0.02\n", 0, 0}};
   const int wears = cases[_i].depth > 0;
-  job j = job_begin("driven");
+  JOB j = job_begin("driven");
   job_copy(&j, "tests/regression/mesh/pair.geo");
   job_write(&j, "driven.geo",
             "Include \"pair.geo\";\nPhysical Curve(\"FOOT\") = {2};\n");
@@ -94,30 +89,25 @@ START_TEST(driven_bodies_slide_on_each_other) {
   const char *told = strstr(j.errors, "P4036:");
   ck_assert_int_eq(told != NULL, _i == 7);
   if (told != NULL) ck_assert_ptr_null(strstr(told + 1, "P4036:"));
-  dat all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
+  DAT all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
   ck_assert_double_eq_tol(fabs(dat_at(&all, 0, "tangential")), cases[_i].drag,
                           1e-9);
   if (wears) {
-    dat w = job_table(&j, "WEAR", -1);
+    DAT w = job_table(&j, "WEAR", -1);
     for (int i = 0; i < w.n_row; ++i) {
       ck_assert_double_eq_tol(dat_at(&w, i, "depth"), cases[_i].depth, 1e-13);
       ck_assert_double_eq_tol(fabs(dat_at(&c, i, "u_t")), 0.02, 1e-14);
     }
     ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), 1e-5, 1e-13);
-    dat_free(&w);
   }
-  dat_free(&c);
-  dat_free(&all);
-  job_end(&j);
 }
-END_TEST
 
 /* Two blocks on a plane of symmetry, the upper one also against a wall, past
  * which the lower one expands: nodes that supports hold have friction if they
  * are those of the master, else it is told. A plane of symmetry is not told,
  * what supports hold beyond the other surface does not choose the slave, what
  * they hold wholly is the master across a gap too. */
-START_TEST(blocks_slide_past_a_wall) {
+TESTS(blocks_slide_past_a_wall, 6) {
   static const struct {
     const char *sizes, *pair, *wall;
     double modulus; /* of the upper one, Pa */
@@ -129,7 +119,7 @@ START_TEST(blocks_slide_past_a_wall) {
       {"", "FIRST", "", 300, 1, 0},
       {"C = 0.2\nD = -0.2\n", "AUTO", "FOOT, 1\n", 5000, 1, 0},
       {"G = 0.5\n", "AUTO", "UPPER, 1\nTOP, 2, 2, -0.51\n", 300, 1, 0}};
-  job j = job_begin("wall");
+  JOB j = job_begin("wall");
   job_copy(&j, "tests/regression/mesh/pair.geo");
   job_write(&j, "wall.geo",
             "Include \"pair.geo\";\nPhysical Curve(\"WALL\") = {12};\n"
@@ -147,51 +137,43 @@ START_TEST(blocks_slide_past_a_wall) {
             cases[_i].sizes, cases[_i].modulus, cases[_i].pair, cases[_i].wall);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   ck_assert_int_eq(strstr(j.errors, "P4036:") != NULL, cases[_i].told);
-  dat c = job_table(&j, "CONTACT", -1);
+  DAT c = job_table(&j, "CONTACT", -1);
   ck_assert_int_eq(c.n_row <= 5, cases[_i].lower);
   for (int i = 0; i < c.n_row && _i < 3; ++i)
     if (dat_at(&c, i, "x") > 0.99)
       ck_assert_double_eq_tol(fabs(dat_at(&c, i, "f_t")),
                               cases[_i].told ? 0 : 0.5 * dat_at(&c, i, "f_n"),
                               1e-9);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* A driven body wears one that a plane of symmetry holds: the next *VISCO step,
  * where nothing changes, has no increment without length, although the held
  * node of the slave comes from its masters by rounding. */
-START_TEST(held_slave_starts_a_step_smoothly) {
-  job j = job_begin("worn");
-  job_copy(&j, "tests/regression/mesh/pair.geo");
-  job_write(&j, "worn.inp",
-            "*PARAMETER\nN = 3\nM = 7\nC = -0.3\n*MESH, FILE=pair.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*INELASTIC, LAW=MAXWELL\n4.\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
-            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
-            "*WEAR, CONTACT=P, COEFFICIENT=1E-5\n"
-            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n*BOUNDARY\n"
-            "BOTTOM, 2\nLEFT, 1\nUPPER, 1, 1, 0.0028\nUPPER, 2, 2, -0.0011\n"
-            "*PRINT, ENERGY\n*END STEP\n"
-            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n*END STEP\n");
+TEST(held_slave_starts_a_step_smoothly) {
+  JOB j =
+      job_with("worn", "tests/regression/mesh/pair.geo",
+               "*PARAMETER\nN = 3\nM = 7\nC = -0.3\n*MESH, FILE=pair.geo\n"
+               "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+               "*INELASTIC, LAW=MAXWELL\n4.\n"
+               "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+               "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+               "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+               "*WEAR, CONTACT=P, COEFFICIENT=1E-5\n"
+               "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n*BOUNDARY\n"
+               "BOTTOM, 2\nLEFT, 1\nUPPER, 1, 1, 0.0028\nUPPER, 2, 2, -0.0011\n"
+               "*PRINT, ENERGY\n*END STEP\n"
+               "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat e = job_table(&j, "ENERGY", -1);
-  ck_assert_double_eq(dat_at(&e, 0, "increment"), 2);
-  dat_free(&e);
-  job_end(&j);
+  ck_assert_double_eq(job_value(&j, "ENERGY", -1, "increment"), 2);
 }
-END_TEST
 
 /* A block that hangs over the edge of another: whether its own top is among the
  * masters, or that of a third above it too, what is beyond the edge meets
  * nothing. */
-START_TEST(back_of_a_slave_is_no_partner) {
+TESTS(back_of_a_slave_is_no_partner, 2) {
   static const char *const masters[] = {"under", "under, top", "under, over"};
   double is[3];
-  job j = job_begin("edge");
+  JOB j = job_begin("edge");
   for (int k = 0; k < 3; ++k) {
     job_write(&j, "edge.geo",
               "Macro Quad\n"
@@ -230,30 +212,26 @@ START_TEST(back_of_a_slave_is_no_partner) {
               2 + _i);
     ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
     ck_assert_ptr_null(strstr(j.errors, "P4004"));
-    dat all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
+    DAT all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
     ck_assert_double_eq_tol(dat_at(&all, 0, "normal"), _i ? 1.0 : 2.0, 1e-9);
     is[k] = 0.0;
     for (int i = 0; i < c.n_row; ++i)
       is[k] = fmax(is[k], dat_at(&c, i, "pressure"));
     ck_assert_double_eq_tol(is[k], is[0], 1e-9);
-    dat_free(&c);
-    dat_free(&all);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* A bar on the upper tread of a step, and above the lower one, which it does
  * not reach: whether that is a master too changes nothing, with a node of the
  * bar above the edge or not. */
-START_TEST(step_of_a_master_is_no_slope) {
+TESTS(step_of_a_master_is_no_slope, 3) {
   static const struct {
     double edge;
     int space;
   } cases[] = {{1.03, 0}, {1.0, 0}, {1.03, 1}};
   const char *side = cases[_i].space ? "Surface" : "Curve";
   double is[2];
-  job j = job_begin("stair");
+  JOB j = job_begin("stair");
   for (int k = 0; k < 2; ++k) {
     job_write(
         &j, "stair.geo",
@@ -295,28 +273,14 @@ START_TEST(step_of_a_master_is_no_slope) {
               "*PRINT, NODES\n*END STEP\n",
               2 + cases[_i].space);
     ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-    dat t = job_table(&j, "NODES", -1);
+    DAT t = job_table(&j, "NODES", -1);
     is[k] = 0.0;
     for (int i = 0; i < t.n_row; ++i)
       if (dat_at(&t, i, "x") > 1.999 && dat_at(&t, i, "y") > 0.79)
         is[k] = dat_at(&t, i, "u_y");
-    dat_free(&t);
   }
   ck_assert_double_lt(is[0], 0.0);
   ck_assert_double_eq_tol(is[1], is[0], 1e-9 * fabs(is[0]));
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("pair_supports");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, wedges_between_walls_bear_the_slope_of_the_load, 0,
-                      2);
-  tcase_add_loop_test(tests, driven_bodies_slide_on_each_other, 0, 8);
-  tcase_add_loop_test(tests, blocks_slide_past_a_wall, 0, 6);
-  tcase_add_test(tests, held_slave_starts_a_step_smoothly);
-  tcase_add_loop_test(tests, back_of_a_slave_is_no_partner, 0, 2);
-  tcase_add_loop_test(tests, step_of_a_master_is_no_slope, 0, 3);
-  return unit_run("pair_supports", tests);
-}
+UNIT_MAIN("pair_supports")

@@ -3,27 +3,15 @@
  * two half planes with friction, the rigid obstacle as limit, Lame's rings
  * under heat, creep and a course of the interference, a tied cantilever.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 const int job_without_fields = 1;
 
 static job run_deck(const char *geo, const char *deck, const char *words) {
-  job j = job_begin("pair");
-  job_copy(&j, geo);
-  job_write(&j, "pair.inp", "%s", deck);
-  int code = job_run(&j, words);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j = job_with("pair", geo, "%s", deck);
+  CK_EXIT(job_run(&j, words), 0, j);
   return j;
-}
-
-/* The first number of a column in the k-th block of a table. */
-static double value(const job *j, const char *kind, int k, const char *name) {
-  dat t = job_table(j, kind, k);
-  const double v = dat_at(&t, 0, name);
-  dat_free(&t);
-  return v;
 }
 
 static void ck_near(const char *what, double is, double expected, double tol) {
@@ -35,7 +23,8 @@ static void ck_near(const char *what, double is, double expected, double tol) {
 static double largest_defect(const job *j, int n_block) {
   double most = 0;
   for (int k = 0; k < n_block; ++k)
-    most = fmax(most, fabs(value(j, "ENERGY", k, "energy_defect_relative")));
+    most =
+        fmax(most, fabs(job_value(j, "ENERGY", k, "energy_defect_relative")));
   return most;
 }
 
@@ -59,7 +48,7 @@ static const char spheres[] =
     "*END STEP\n";
 
 /* a^3 = 3 P R/(4 E*), p0 = 3 P/(2 pi a^2), p = p0 sqrt(1 - r^2/a^2). */
-START_TEST(spheres_of_two_materials) {
+TESTS(spheres_of_two_materials, 3) {
   const struct {
     const char *words;
     double E1, E2;
@@ -69,25 +58,21 @@ START_TEST(spheres_of_two_materials) {
   const double pi = acos(-1.0), P = 100, R = 6;
   const double Es = 1 / (0.91 * (1 / cases[_i].E1 + 1 / cases[_i].E2));
   const double a = cbrt(3 * P * R / (4 * Es)), p0 = 3 * P / (2 * pi * a * a);
-  job j = run_deck(ROLLERS, spheres, cases[_i].words);
-  dat z = job_table(&j, "ZONES", -1), c = job_table(&j, "CONTACT", -1);
+  JOB j = run_deck(ROLLERS, spheres, cases[_i].words);
+  DAT z = job_table(&j, "ZONES", -1), c = job_table(&j, "CONTACT", -1);
   const int slip = dat_zone(&z, 1);
   ck_near("a", fmax(dat_at(&z, slip, "r_from"), dat_at(&z, slip, "r_to")), a,
           0.005);
-  ck_near("p0", value(&j, "TOTALS", -1, "pressure_max"), p0, 0.01);
+  ck_near("p0", job_value(&j, "TOTALS", -1, "pressure_max"), p0, 0.01);
   for (int i = 0; i < c.n_row; ++i) {
     const double r = dat_at(&c, i, "r") / a;
     if (r < 0.9)
       ck_assert_double_eq_tol(dat_at(&c, i, "pressure") / p0, sqrt(1 - r * r),
                               0.015);
   }
-  ck_near("P", value(&j, "TOTALS", -1, "force_z"), -P * (_i == 1 ? -1 : 1),
+  ck_near("P", job_value(&j, "TOTALS", -1, "force_z"), -P * (_i == 1 ? -1 : 1),
           1e-9);
-  dat_free(&c);
-  dat_free(&z);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- friction between half planes ----------------------------------------
  */
@@ -95,12 +80,12 @@ END_TEST
 /* Two equal rollers, pressed, then pushed up to Q = 0.9 mu P in ten increments
  * (Cattaneo, Mindlin): the middle sticks up to b sqrt(1 - Q/(mu P)), to half
  * an element at both ends. */
-START_TEST(stick_zone_of_equal_rollers) {
+TEST(stick_zone_of_equal_rollers) {
   const double pi = acos(-1.0), mu = 0.2, P = 10;
   const double b = sqrt(4 * P * 8 * 0.91 / (pi * 200));
-  job j = job_deck("input/roller/two_rollers", "-D Q=1.8 -D N1=10 -D N2=14");
+  JOB j = job_deck("input/roller/two_rollers", "-D Q=1.8 -D N1=10 -D N2=14");
   for (int k = 1; k <= 10; ++k) {
-    dat z = job_table(&j, "ZONES", k);
+    DAT z = job_table(&j, "ZONES", k);
     const double Q = 0.18 * k, stick = b * sqrt(1 - Q / (mu * P));
     const int row = dat_zone(&z, 2);
     const double ends[] = {dat_at(&z, row, "x_from"), dat_at(&z, row, "x_to")};
@@ -109,15 +94,12 @@ START_TEST(stick_zone_of_equal_rollers) {
                     "Q/(mu P) = %g: %g, expected %g", Q / (mu * P), ends[e],
                     stick);
     ck_assert_double_lt(ends[0] * ends[1], 0);
-    ck_near("Q", value(&j, "TOTALS", k, "force_x"), Q, 1e-9);
-    dat_free(&z);
+    ck_near("Q", job_value(&j, "TOTALS", k, "force_x"), Q, 1e-9);
   }
-  ck_near("p0", value(&j, "TOTALS", -1, "pressure_max"), 2 * P / (pi * b),
+  ck_near("p0", job_value(&j, "TOTALS", -1, "pressure_max"), 2 * P / (pi * b),
           0.005);
   ck_assert_double_le(largest_defect(&j, 11), 1e-10);
-  job_end(&j);
 }
-END_TEST
 
 #define PUSH(factor)                                                   \
   "TOP, TX, \"Q/(2*R)*(" factor ")\"\nTOP, TY, \"1.5*Q/R^2*x*(" factor \
@@ -127,7 +109,7 @@ END_TEST
 /* The same, pushed to and fro between -mu P/2 and mu P/2: the heat of a cycle
  * is 0.036193629 (mu P)^2/E*, of the relative displacement of two bodies with
  * 1/E* = 2 (1 - nu^2)/E. */
-START_TEST(heat_of_a_cycle) {
+TEST(heat_of_a_cycle) {
   static const char deck[] =
       "*PARAMETER\nR = 8.\nP = 1.\nMU = 0.2\nE = 200.\nQ = \"MU*P/2\"\n"
       "R1 = \"R\"\nR2 = \"R\"\nN1 = 14\nN2 = 20\n"
@@ -144,13 +126,11 @@ START_TEST(heat_of_a_cycle) {
       "*STEP\n*QUASISTATIC\n0.5, 4.\n*DSLOAD\n" PUSH("abs(t - 4) - 1")
       "*END STEP\n";
   const double E = 200 / (2 * 0.91), limit = 0.2;
-  job j = run_deck(ROLLERS, deck, "");
-  ck_near("heat", value(&j, "LOOP", -1, "loop_area"),
+  JOB j = run_deck(ROLLERS, deck, "");
+  ck_near("heat", job_value(&j, "LOOP", -1, "loop_area"),
           0.036193629 * limit * limit / E, 0.02);
   ck_assert_double_le(largest_defect(&j, 11), 1e-10);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * Roller and block of different materials (NAFEMS CGS-1) under a load so small
@@ -160,24 +140,21 @@ END_TEST
  * friction against the whole slip): p0 1.0191 of Hertz's, a 0.9996, stick up
  * to 0.1506 a.
  */
-START_TEST(friction_of_two_materials) {
+TEST(friction_of_two_materials) {
   const double pi = acos(-1.0), P = 35;
   const double a = sqrt(4 * P * 50 * 0.91 * (1 / 70e3 + 1 / 210e3) / pi);
-  job j;
-  const int code = job_run_with(&j, "input/roller/roller",
-                                "*FRICTION, CONTACT=LINE, LAW=COULOMB\n0.1\n",
-                                0, "-D P=35 -D N1=14 -D N2=20");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat z = job_table(&j, "ZONES", -1);
-  ck_near("p0", value(&j, "TOTALS", -1, "pressure_max"),
+  JOB j;
+  CK_EXIT(job_run_with(&j, "input/roller/roller",
+                       "*FRICTION, CONTACT=LINE, LAW=COULOMB\n0.1\n", 0,
+                       "-D P=35 -D N1=14 -D N2=20"),
+          0, j);
+  DAT z = job_table(&j, "ZONES", -1);
+  ck_near("p0", job_value(&j, "TOTALS", -1, "pressure_max"),
           1.0191 * 2 * P / (pi * a), 0.005);
   ck_near("stick", fabs(dat_at(&z, dat_zone(&z, 2), "x_from")), 0.1506 * a,
           0.2);
   ck_near("a", fabs(dat_at(&z, dat_zone(&z, 1), "x_from")), 0.9996 * a, 0.005);
-  dat_free(&z);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- the rigid obstacle as limit -----------------------------------------
  */
@@ -192,7 +169,7 @@ END_TEST
 
 /* A block pressed obliquely on one whose E is 1e6 times its own, or on a
  * plane. */
-START_TEST(stiff_master_is_a_plane) {
+TEST(stiff_master_is_a_plane) {
   static const char step[] = FRICTION
       "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nBOTTOM, 1, 2\n*DSLOAD\n"
       "TOP, P, \"1 + 4*x\"\nTOP, TX, 0.3\n*PRINT, CONTACT\n*END STEP\n";
@@ -204,9 +181,8 @@ START_TEST(stiff_master_is_a_plane) {
   job j[2];
   dat c[2];
   for (int k = 0; k < 2; ++k) {
-    char deck[1200];
-    snprintf(deck, sizeof deck, "*PARAMETER\nN = 6\nM = 8\n%s%s%s",
-             BODIES("1.E9", "1000."), contacts[k], step);
+    PRINTED(deck, "*PARAMETER\nN = 6\nM = 8\n%s%s%s", BODIES("1.E9", "1000."),
+            contacts[k], step);
     j[k] = run_deck(BLOCKS, deck, "");
     c[k] = job_table(&j[k], "CONTACT", -1);
   }
@@ -225,34 +201,30 @@ START_TEST(stiff_master_is_a_plane) {
     job_end(&j[k]);
   }
 }
-END_TEST
 
 /* A stiff punch that only the pair holds, its edges on nodes of the block: as
  * master or as slave it does the same. */
-START_TEST(stiff_punch_is_slave_or_master) {
+TEST(stiff_punch_is_slave_or_master) {
   double energy[2];
   for (int k = 0; k < 2; ++k) {
-    char deck[1000];
-    snprintf(deck, sizeof deck,
-             "*PARAMETER\nN = 20\nM = 10\nC = 0.3\n" BODIES("1000.", "1.E9")
+    PRINTED(deck,
+            "*PARAMETER\nN = 20\nM = 10\nC = 0.3\n" BODIES("1000.", "1.E9")
              "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
              "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1\n"
              "*DSLOAD\nTOP, P, \"3 + 2*x\"\n*PRINT, TOTALS, ENERGY\n"
              "*END STEP\n",
              k == 0 ? "FIRST" : "SECOND");
-    job j = run_deck(BLOCKS, deck, "");
-    energy[k] = value(&j, "ENERGY", -1, "strain_energy");
-    ck_near("force", value(&j, "TOTALS", -1, "normal"), 1.6, 1e-9);
-    job_end(&j);
+    JOB j = run_deck(BLOCKS, deck, "");
+    energy[k] = job_value(&j, "ENERGY", -1, "strain_energy");
+    ck_near("force", job_value(&j, "TOTALS", -1, "normal"), 1.6, 1e-9);
   }
   ck_near("energy", energy[1], energy[0], 1e-6);
 }
-END_TEST
 
 /* A slave node that its support holds has no multiplier, its part of the force
  * is the neighbour's: the resultant of the pair is the load all the same. */
-START_TEST(resultant_with_held_nodes) {
-  job j = run_deck(BLOCKS,
+TEST(resultant_with_held_nodes) {
+  JOB j = run_deck(BLOCKS,
                    "*PARAMETER\nN = 4\nM = 7\n" BODIES(
                        "1000.",
                        "1000.") "*CONTACT PAIR, NAME=P, SLAVE=FIRST\n"
@@ -261,7 +233,7 @@ START_TEST(resultant_with_held_nodes) {
                                 "BOTTOM, 1, 2\n*DSLOAD\nTOP, P, \"3 + x\"\n"
                                 "*PRINT, TOTALS, NODES, REACTIONS\n*END STEP\n",
                    "");
-  dat n = job_table(&j, "NODES", -1);
+  DAT n = job_table(&j, "NODES", -1);
   double force[2] = {0, 0}, moment = 0;
   for (int i = 0; i < n.n_row; ++i) {
     const double x = dat_at(&n, i, "x"), y = dat_at(&n, i, "y");
@@ -271,14 +243,11 @@ START_TEST(resultant_with_held_nodes) {
     force[1] += f[1];
     moment += (x - 0.25) * f[1] - y * f[0];
   }
-  ck_near("normal", value(&j, "TOTALS", -1, "normal"), -force[1], 1e-12);
-  ck_near("force_x", value(&j, "TOTALS", -1, "force_x"), force[0], 1e-9);
-  ck_near("torque", value(&j, "TOTALS", -1, "torque"), moment, 1e-9);
-  ck_near("area", value(&j, "TOTALS", -1, "closed_area"), 1, 1e-9);
-  dat_free(&n);
-  job_end(&j);
+  ck_near("normal", job_value(&j, "TOTALS", -1, "normal"), -force[1], 1e-12);
+  ck_near("force_x", job_value(&j, "TOTALS", -1, "force_x"), force[0], 1e-9);
+  ck_near("torque", job_value(&j, "TOTALS", -1, "torque"), moment, 1e-9);
+  ck_near("area", job_value(&j, "TOTALS", -1, "closed_area"), 1, 1e-9);
 }
-END_TEST
 
 /* ---- rings ---------------------------------------------------------------
  */
@@ -305,17 +274,16 @@ static double ring_of(double E, double nu) {
 
 static void check_fit(const job *j, int k, double p, double mean) {
   const double pi = acos(-1.0);
-  dat c = job_table(j, "CONTACT", k);
-  ck_near("mean pressure", value(j, "TOTALS", k, "normal"), p * 20 * pi / 2,
+  DAT c = job_table(j, "CONTACT", k);
+  ck_near("mean pressure", job_value(j, "TOTALS", k, "normal"), p * 20 * pi / 2,
           mean);
   for (int i = 0; i < c.n_row; ++i)
     ck_near("pressure", dat_at(&c, i, "pressure"), p, 0.01);
-  dat_free(&c);
 }
 
 /* A ring of steel heated by 80 in a hub of aluminium; plane strain is plane
  * stress with E/(1 - nu^2), nu/(1 - nu), (1 + nu) alpha. */
-START_TEST(shrink_fit_by_heat) {
+TEST(shrink_fit_by_heat) {
 #define HEAT(type)                                        \
   FIT("*EXPANSION\n1.2D-5\n", "", type, "\nSEAT, BORE\n") \
   "*STEP\n*QUASISTATIC\n0.5, 1.\n" HELD                   \
@@ -334,12 +302,11 @@ START_TEST(shrink_fit_by_heat) {
             0.001);
   job_end(&j);
 }
-END_TEST
 
 /* The interference follows its amplitude, then the hub creeps (Maxwell, tau):
  * (c_ring + c_hub) dp/dt = -c_hub p/tau. Orders of the integrators for a dt of
  * 0.25: first 10 %, second 0.3 %, fourth 0.05 %, what the mesh leaves. */
-START_TEST(hub_that_creeps) {
+TESTS(hub_that_creeps, 7) {
   static const struct {
     const char *name;
     double tol;
@@ -352,30 +319,26 @@ START_TEST(hub_that_creeps) {
                      {"THETA, THETA=0.7", 0.05}};
   const double c_ring = ring_of(210e3, 0.3), c_hub = hub_of(70e3, 0.33);
   const double p0 = 0.02 / (c_ring + c_hub);
-  char deck[1600];
-  snprintf(deck, sizeof deck,
-           FIT("", "*INELASTIC, LAW=MAXWELL\n2.\n", "CPS3",
+  PRINTED(deck, FIT("", "*INELASTIC, LAW=MAXWELL\n2.\n", "CPS3",
                ", AMPLITUDE=COURSE\nSEAT, BORE\nINTERFERENCE, 0.02\n")
            "*STEP\n*QUASISTATIC\n0.5, 2.\n" HELD
            "*PRINT, CONTACT, TOTALS, ENERGY\n*END STEP\n"
            "*STEP\n*VISCO, INTEGRATOR=%s\n0.25, 4.\n*END STEP\n",
            integrators[_i].name);
-  job j = run_deck(RINGS, deck, "");
+  JOB j = run_deck(RINGS, deck, "");
   for (int k = 0; k < 4; ++k) check_fit(&j, k, p0 * 0.25 * (k + 1), 0.001);
-  ck_near("relaxed", value(&j, "TOTALS", -1, "normal"),
-          value(&j, "TOTALS", 3, "normal") *
+  ck_near("relaxed", job_value(&j, "TOTALS", -1, "normal"),
+          job_value(&j, "TOTALS", 3, "normal") *
               exp(-c_hub / (c_ring + c_hub) * 4. / 2.),
           integrators[_i].tol);
   ck_assert_double_le(largest_defect(&j, 20), 1e-12);
-  job_end(&j);
 }
-END_TEST
 
 /* Whole rings pressed into each other and twisted to 80 % of what friction
  * holds: once the nodes are on the master the forces of both sides leave no
  * moment. */
-START_TEST(twisted_rings_leave_no_moment) {
-  job j = job_begin("twist");
+TEST(twisted_rings_leave_no_moment) {
+  JOB j = job_begin("twist");
   job_write(
       &j, "rings.geo",
       "N = 128; M = 180; w = 0.3; h = Pi * 40 / N;\nPoint(1) = {0, 0, 0};\n"
@@ -405,21 +368,19 @@ START_TEST(twisted_rings_leave_no_moment) {
             "*STEP\n*QUASISTATIC\n0.5, 1.\n*DSLOAD\nSHAFT, TX, \"-10*y\"\n"
             "SHAFT, TY, \"10*x\"\n*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  const double torque = value(&j, "TOTALS", -1, "torque");
+  const double torque = job_value(&j, "TOTALS", -1, "torque");
   /* traction 10 r on r = 10, once around, polygons of 128 edges */
   ck_near("torque", torque, -2 * acos(-1.0) * 1e4, 2e-3);
-  ck_assert_double_le(value(&j, "TOTALS", -1, "moment_of_both"),
+  ck_assert_double_le(job_value(&j, "TOTALS", -1, "moment_of_both"),
                       1e-9 * fabs(torque));
-  job_end(&j);
 }
-END_TEST
 
 /* ---- ties ----------------------------------------------------------------
  */
 
 /* A cantilever of two meshes tied along an inclined cut, against one mesh of
  * the coarser size all over, and of the finer. */
-START_TEST(tied_cantilever) {
+TEST(tied_cantilever) {
   static const char geo[] =
       "DefineConstant[ N = 8, M = 11, ONE = 0 ];\n"
       "Macro Part\n"
@@ -444,7 +405,7 @@ START_TEST(tied_cantilever) {
                                       "-D ONE=1 -D N=11"};
   double energy[4], condition[4];
   for (int k = 0; k < 4; ++k) {
-    job j = job_begin("beam");
+    JOB j = job_begin("beam");
     job_write(&j, "beam.geo", "%s", geo);
     job_write(&j, "beam.inp",
               "*MESH, FILE=beam.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
@@ -453,13 +414,11 @@ START_TEST(tied_cantilever) {
               "*END STEP\n",
               k % 3 == 0 ? "" : "*TIE, NAME=T\nA, B\n");
     ck_assert_msg(job_run(&j, words[k]) == 0, "%s", j.errors);
-    energy[k] = value(&j, "ENERGY", -1, "strain_energy");
-    char *list = job_file(&j, "lst");
+    energy[k] = job_value(&j, "ENERGY", -1, "strain_energy");
+    FREED char *list = job_file(&j, "lst");
     ck_assert_int_eq(
         sscanf(strstr(list, "  condition "), " condition %lf", &condition[k]),
         1);
-    free(list);
-    job_end(&j);
   }
   for (int k = 1; k < 3; ++k) {
     ck_near("energy", energy[k], 0.5 * (energy[0] + energy[3]),
@@ -468,21 +427,5 @@ START_TEST(tied_cantilever) {
     ck_assert_double_le(condition[k], 3 * condition[3]);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("pair_theory");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, spheres_of_two_materials, 0, 3);
-  tcase_add_test(tests, stick_zone_of_equal_rollers);
-  tcase_add_test(tests, heat_of_a_cycle);
-  tcase_add_test(tests, friction_of_two_materials);
-  tcase_add_test(tests, stiff_master_is_a_plane);
-  tcase_add_test(tests, stiff_punch_is_slave_or_master);
-  tcase_add_test(tests, resultant_with_held_nodes);
-  tcase_add_test(tests, shrink_fit_by_heat);
-  tcase_add_loop_test(tests, hub_that_creeps, 0, 7);
-  tcase_add_test(tests, twisted_rings_leave_no_moment);
-  tcase_add_test(tests, tied_cantilever);
-  return unit_run("pair_theory", tests);
-}
+UNIT_MAIN("pair_theory")

@@ -3,7 +3,6 @@
  * ties, a held master against the rigid plane, interference, and what is
  * refused.
  */
-#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/traced.h"
@@ -23,8 +22,7 @@ typedef struct scene {
 
 static job run_scene(const scene *s, const char *words) {
   job j = job_begin("pair");
-  char path[80];
-  snprintf(path, sizeof path, "tests/regression/mesh/%s.geo", s->geo);
+  PRINTED(path, "tests/regression/mesh/%s.geo", s->geo);
   job_copy(&j, path);
   job_write(&j, "pair.inp",
             "*PARAMETER\n%s\n*MESH, FILE=%s.geo\n"
@@ -38,8 +36,7 @@ static job run_scene(const scene *s, const char *words) {
             s->numbers, s->geo, s->E[0], s->nu, s->E[1], s->nu, s->type,
             s->type, s->joint, s->supports, s->loads,
             strstr(s->joint, "*CONTACT") != NULL ? ", CONTACT, TOTALS" : "");
-  int code = job_run(&j, words);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, words), 0, j);
   return j;
 }
 
@@ -172,7 +169,7 @@ static const scene patches[] = {
 
 /* Stress of the patch: [0] for names, [1] values. */
 static void check_stress(const scene *s, const job *j) {
-  dat e = job_table(j, "ELEMENTS", -1);
+  DAT e = job_table(j, "ELEMENTS", -1);
   const int solid = strcmp(s->geo, "pair3") == 0;
   const int axi = strstr(s->type, "CAX3") != NULL;
   const int turned = s->loads[strlen("TOP, ")] == 'T';
@@ -193,19 +190,17 @@ static void check_stress(const scene *s, const job *j) {
     ck_assert_double_eq_tol(dat_at(&e, i, along), normal, 1e-10 * 3);
     ck_assert_double_eq_tol(dat_at(&e, i, across), shear, 1e-10 * 3);
   }
-  dat_free(&e);
 }
 
-START_TEST(patch) {
+TESTS(patch, sizeof patches / sizeof *patches) {
   const scene *s = &patches[_i];
-  job j = run_scene(s, "--no-timing");
+  JOB j = run_scene(s, "--no-timing");
   check_stress(s, &j);
-  dat e = job_table(&j, "ENERGY", -1);
+  DAT e = job_table(&j, "ENERGY", -1);
   ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect")),
                       1e-12 * dat_at(&e, 0, "external_work"));
-  dat_free(&e);
   if (strstr(s->joint, "*CONTACT") != NULL) {
-    dat n = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
+    DAT n = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
     static const char *const names[] = {"contact_x", "contact_y", "contact_z",
                                         "contact_r"};
     const int wall = strstr(s->joint, "NAME=W") != NULL; /* bears 2 */
@@ -218,18 +213,14 @@ START_TEST(patch) {
                      strstr(s->type, "CAX3") == NULL);
     if (dat_has(&t, "moment_of_both"))
       ck_assert_double_le(dat_at(&t, 0, "moment_of_both"), 1e-10 * 3);
-    dat_free(&n);
-    dat_free(&t);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* ---- ties ---------------------------------------------------------------- */
 
 /* The component that a support holds is its own: the upper block is carried
  * sideways, without shear. */
-START_TEST(supports_hold_components_of_tied_nodes) {
+TEST(supports_hold_components_of_tied_nodes) {
   const scene s = {"pair",
                    "N = 5\nM = 4",
                    ", TYPE=CPE3",
@@ -238,20 +229,17 @@ START_TEST(supports_hold_components_of_tied_nodes) {
                    "*TIE, NAME=P, SLAVE=SECOND\nUNDER, OVER\n",
                    "BOTTOM, 1, 2\nOVER, 1, 1, 0.001\n",
                    PRESSED};
-  job j = run_scene(&s, "--no-timing");
+  JOB j = run_scene(&s, "--no-timing");
   check_stress(&s, &j);
-  dat n = job_table(&j, "NODES", -1);
+  DAT n = job_table(&j, "NODES", -1);
   ck_assert_double_eq_tol(dat_max(&n, "u_x"), 0.001, 1e-15);
   /* below, above and with the nodes of both: 6 by 6, 5 by 5 at least */
   ck_assert_double_ge(dat_sum(&n, "u_x"), 25 * 0.001 - 1e-12);
-  dat_free(&n);
-  job_end(&j);
 }
-END_TEST
 
 /* The supports of a body carry what is tied to it: a block of 1 x 1 pressed by
  * 3 and moved by (0.01, 0.02). */
-START_TEST(reactions_of_a_tied_body_are_at_its_master) {
+TEST(reactions_of_a_tied_body_are_at_its_master) {
   const scene s = {"pair",
                    "N = 3\nM = 5",
                    ", TYPE=CPE3",
@@ -260,77 +248,62 @@ START_TEST(reactions_of_a_tied_body_are_at_its_master) {
                    "*TIE, NAME=P, SLAVE=SECOND\nUNDER, OVER\n",
                    "LOWER, 1, 1, 0.01\nLOWER, 2, 2, 0.02\n",
                    "TOP, P, 3.\nTOP, TX, 1.\n*PRINT, REACTIONS\n"};
-  job j = run_scene(&s, "--no-timing");
-  dat n = job_table(&j, "REACTIONS", -1), e = job_table(&j, "ENERGY", -1);
+  JOB j = run_scene(&s, "--no-timing");
+  DAT n = job_table(&j, "REACTIONS", -1), e = job_table(&j, "ENERGY", -1);
   ck_assert_double_eq_tol(dat_sum(&n, "reaction_x"), -1, 1e-12);
   ck_assert_double_eq_tol(dat_sum(&n, "reaction_y"), 3, 1e-12);
   ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect")),
                       1e-12 * dat_at(&e, 0, "strain_energy"));
-  dat_free(&n);
-  dat_free(&e);
-  job_end(&j);
 }
-END_TEST
 
 /* Given as the solution of the tied bodies they are the start, with a contact
  * and without. */
-START_TEST(initial_displacements_of_tied_bodies_are_compatible) {
-  job j = job_begin("start");
-  job_copy(&j, "tests/regression/mesh/pair.geo");
-  job_write(&j, "start.inp",
-            "*PARAMETER\nN = 4\nM = 6\n*MESH, FILE=pair.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
-            "*TIE, NAME=P\nUNDER, OVER\n%s"
-            "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n"
-            "LOWER, 2, \"-0.003*y\"\nUPPER, 2, \"-0.003*y\"\n"
-            "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nBOTTOM, 1, 2\n"
-            "*DSLOAD\nTOP, P, \"3 + 0*t\"\n*PRINT, NODES\n*END STEP\n",
-            _i ? WALL("") : "");
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat n = job_table(&j, "NODES", -1);
+TESTS(initial_displacements_of_tied_bodies_are_compatible, 2) {
+  JOB j = job_with("start", "tests/regression/mesh/pair.geo",
+                   "*PARAMETER\nN = 4\nM = 6\n*MESH, FILE=pair.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+                   "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+                   "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+                   "*TIE, NAME=P\nUNDER, OVER\n%s"
+                   "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n"
+                   "LOWER, 2, \"-0.003*y\"\nUPPER, 2, \"-0.003*y\"\n"
+                   "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nBOTTOM, 1, 2\n"
+                   "*DSLOAD\nTOP, P, \"3 + 0*t\"\n*PRINT, NODES\n*END STEP\n",
+                   _i ? WALL("") : "");
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
+  DAT n = job_table(&j, "NODES", -1);
   for (int i = 0; i < n.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&n, i, "u_y"), -3e-3 * dat_at(&n, i, "y"),
                             1e-14);
-  dat_free(&n);
-  job_end(&j);
 }
-END_TEST
 
 /* A block with one above and one beside it under pressure from all sides, the
  * nodes of their common edge in two ties, also of another number of nodes. */
-START_TEST(node_of_two_ties_is_of_the_first) {
+TESTS(node_of_two_ties_is_of_the_first, 4) {
   static const char *const ties[] = {
       "*TIE, NAME=P, SLAVE=FIRST\nUP, ABOVE\n",
       "*TIE, NAME=Q, SLAVE=FIRST\nASIDE, BESIDE\n",
       "*TIE, NAME=Q, SLAVE=SECOND\nASIDE, BESIDE\n"};
   const int other = _i < 2 ? 1 : 2;
-  job j = job_begin("corner");
-  job_copy(&j, "tests/regression/mesh/corner.geo");
-  job_write(&j, "corner.inp",
-            "*MESH, FILE=corner.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n%s%s*STEP\n"
-            "*STATIC\n*BOUNDARY\nBOTTOM, 2\nRIGHT, 1\n*DSLOAD\n"
-            "OUTSIDE, P, 3.\n*SOLVER, TOL=1E-13\n*PRINT, ELEMENTS\n*END STEP\n",
-            ties[_i % 2 * other], ties[(1 - _i % 2) * other]);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat e = job_table(&j, "ELEMENTS", -1);
+  JOB j = job_with(
+      "corner", "tests/regression/mesh/corner.geo",
+      "*MESH, FILE=corner.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n%s%s*STEP\n"
+      "*STATIC\n*BOUNDARY\nBOTTOM, 2\nRIGHT, 1\n*DSLOAD\n"
+      "OUTSIDE, P, 3.\n*SOLVER, TOL=1E-13\n*PRINT, ELEMENTS\n*END STEP\n",
+      ties[_i % 2 * other], ties[(1 - _i % 2) * other]);
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
+  DAT e = job_table(&j, "ELEMENTS", -1);
   for (int i = 0; i < e.n_row; ++i) {
     ck_assert_double_eq_tol(dat_at(&e, i, "stress_xx"), -3, 3e-10);
     ck_assert_double_eq_tol(dat_at(&e, i, "stress_yy"), -3, 3e-10);
     ck_assert_double_eq_tol(dat_at(&e, i, "stress_xy"), 0, 3e-10);
   }
-  dat_free(&e);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- which side is the slave --------------------------------------------- */
 
-START_TEST(slave_is_chosen) {
+TESTS(slave_is_chosen, 30) {
   static const struct {
     const char *numbers;
     double E[2];
@@ -385,9 +358,8 @@ START_TEST(slave_is_chosen) {
        "slave UNDER (by SLAVE=)"}};
   const int led = strcmp(cases[_i / 2].card, ", SLAVE=FIRST") == 0 &&
                   cases[_i / 2].E[1] > 1;
-  char joint[80];
-  snprintf(joint, sizeof joint, "*%s, NAME=P%s\nUNDER, OVER\n",
-           _i % 2 ? "TIE" : "CONTACT PAIR", cases[_i / 2].card);
+  PRINTED(joint, "*%s, NAME=P%s\nUNDER, OVER\n",
+          _i % 2 ? "TIE" : "CONTACT PAIR", cases[_i / 2].card);
   const scene s = {"pair",
                    cases[_i / 2].numbers,
                    ", TYPE=CPE3",
@@ -396,16 +368,13 @@ START_TEST(slave_is_chosen) {
                    joint,
                    cases[_i / 2].supports,
                    "TOP, P, 1e-3\n"};
-  job j = run_scene(&s, "--no-timing");
-  char *text = job_file(&j, "lst");
+  JOB j = run_scene(&s, "--no-timing");
+  FREED char *text = job_file(&j, "lst");
   ck_assert_msg(strstr(text, cases[_i / 2].told) != NULL, "%s: %s",
                 cases[_i / 2].told, strstr(text, "slave"));
   ck_assert_msg(led == (strstr(text, _i % 2 ? "P4032" : "P4031") != NULL), "%s",
                 j.errors);
-  free(text);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- a held master is the rigid plane ------------------------------------ */
 
@@ -429,14 +398,13 @@ static void run_block(job *j, int pair, const char *cards, const char *solver) {
                  : "*OBSTACLE, NAME=O, TYPE=PLANE, AMPLITUDE=RUN\n0, 1\n0, 1\n"
                    "MOVE, 0.004, 0\n*CONTACT, NAME=P, GROUP=OVER, OBSTACLE=O\n",
             cards, solver);
-  int code = job_run(j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
+  CK_EXIT(job_run(j, "--no-timing"), 0, *j);
 }
 
 static void check_same(const job *a, const job *b, double tol) {
   static const char *const names[] = {"f_n", "f_t", "gap"};
   for (int k = 0; k < 6; ++k) {
-    dat x = job_table(a, "CONTACT", k), y = job_table(b, "CONTACT", k);
+    DAT x = job_table(a, "CONTACT", k), y = job_table(b, "CONTACT", k);
     ck_assert_int_eq(x.n_row, y.n_row);
     for (int i = 0; i < x.n_row; ++i) {
       for (int c = 0; c < 3; ++c)
@@ -444,12 +412,10 @@ static void check_same(const job *a, const job *b, double tol) {
                                 dat_at(&y, i, names[c]), tol);
       ck_assert_double_eq(dat_at(&x, i, "status"), dat_at(&y, i, "status"));
     }
-    dat_free(&x);
-    dat_free(&y);
   }
 }
 
-START_TEST(held_master_is_a_plane) {
+TESTS(held_master_is_a_plane, 6) {
   static const char *const laws[] = {
       "",
       "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n",
@@ -459,23 +425,20 @@ START_TEST(held_master_is_a_plane) {
       "*CONTACT FORCE, CONTACT=P\n2.\n*BOUNDARY\nTOP, 2\n",
       "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n"
       "*WEAR, CONTACT=P, COEFFICIENT=1.E-3\n"};
-  job pair, plane;
+  JOB pair, plane;
   run_block(&pair, 1, laws[_i], "*SOLVER, TOL=1E-13\n");
   run_block(&plane, 0, laws[_i], "*SOLVER, TOL=1E-13\n");
   check_same(&pair, &plane, 1e-9);
-  job_end(&pair);
-  job_end(&plane);
 }
-END_TEST
 
 /* Stopped half way and gone on with: the same files. */
-START_TEST(restart_is_bit_for_bit) {
+TEST(restart_is_bit_for_bit) {
   static const char *const words[] = {"--no-timing", NULL};
   static const char *const cards =
       "*FRICTION, CONTACT=P, LAW=NONLOCAL, RADIUS=0.3\n0.3\n"
       "*WEAR, CONTACT=P, COEFFICIENT=1.E-3\n";
   traced t = {.action = TRACE_SIGNAL, .number = SIGTERM};
-  job whole, stopped;
+  JOB whole, stopped;
   run_block(&whole, 1, cards, "*RESTART\n*OUTPUT\n");
   run_block(&stopped, 1, cards, "*RESTART\n*OUTPUT\n");
   job_clear(&stopped);
@@ -486,16 +449,13 @@ START_TEST(restart_is_bit_for_bit) {
   ck_assert_int_eq(job_run(&stopped, "--restart --no-timing"), 0);
   const char *differs = traced_difference(&whole, &stopped);
   ck_assert_msg(differs == NULL, ".%s differs", differs);
-  job_end(&stopped);
-  job_end(&whole);
 }
-END_TEST
 
 /* ---- gaps ---------------------------------------------------------------- */
 
 /* Columns without lateral strain, clamped at both ends: of the interference d
  * each takes its part, p = d/(1/E1 + 1/E2); a clearance comes off first. */
-START_TEST(interference_and_clearance) {
+TESTS(interference_and_clearance, 4) {
   static const struct {
     const char *line;
     double gap, motion;
@@ -503,29 +463,23 @@ START_TEST(interference_and_clearance) {
                {"INTERFERENCE, \"0.002*t\"\n", -0.002, 0},
                {"CLEARANCE, 0.001\n", 0.001, -0.003},
                {"CLEARANCE, \"0.001 + 0*x\"\n", 0.001, -0.003}};
-  char joint[160], supports[80];
-  snprintf(joint, sizeof joint, "%s%s", PAIR, cases[_i].line);
-  snprintf(supports, sizeof supports, "BOTTOM, 2\nLEFT, 1\nTOP, 2, 2, %g\n",
-           cases[_i].motion);
+  PRINTED(joint, "%s%s", PAIR, cases[_i].line);
+  PRINTED(supports, "BOTTOM, 2\nLEFT, 1\nTOP, 2, 2, %g\n", cases[_i].motion);
   const scene s = {"pair", "N = 3", ", TYPE=CPE3", {1e3, 2e3},
                    0,      joint,   supports,      "TOP, P, 0.\n"};
   const double p = -(cases[_i].gap + cases[_i].motion) / (1e-3 + 0.5e-3);
-  job j = run_scene(&s, "--no-timing");
-  dat t = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
+  JOB j = run_scene(&s, "--no-timing");
+  DAT t = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
   ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), p, 1e-10);
   for (int i = 0; i < c.n_row; ++i) {
     ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), p, 1e-10);
     ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 0, 1e-15);
   }
-  dat_free(&t);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* Facets enter each other by up to 5 % of their size, about 0.3, and by a tenth
  * of an interference; so far they gape. */
-START_TEST(depth_is_told_beyond_that_of_facets) {
+TEST(depth_is_told_beyond_that_of_facets) {
   static const struct {
     const char *numbers, *joint, *told;
   } rows[] = {
@@ -548,36 +502,32 @@ START_TEST(depth_is_told_beyond_that_of_facets) {
                      rows[k].joint,
                      "BOTTOM, 3\nLEFT, 1\nFRONT, 2\n",
                      "TOP, P, 1.\n"};
-    job j = run_scene(&s, "--check");
+    JOB j = run_scene(&s, "--check");
     const char *told = rows[k].told == NULL ? "P4004" : rows[k].told;
     ck_assert_msg((strstr(j.errors, told) != NULL) == (rows[k].told != NULL),
                   "%s", j.errors);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* The seat of a ring, facets within those of the bore, is moved by up to 0.03:
  * what is left of the gap, but for a clearance of 1, is a thousandth of it. */
-START_TEST(adjusted_nodes_are_on_the_master) {
-  job j = job_begin("seat");
-  job_copy(&j, "input/press_fit/press_fit.geo");
-  job_write(&j, "seat.inp",
-            "*PARAMETER\nN = 8\nM = 11\n*MESH, FILE=press_fit.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=RING, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=HUB, MATERIAL=M\n"
-            "*CONTACT PAIR, NAME=P, ADJUST=YES\nSEAT, BORE\nCLEARANCE, 1.\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nFLAT X, 1\nFLAT Y, 2\n"
-            "*PRINT, CONTACT\n*END STEP\n");
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+TEST(adjusted_nodes_are_on_the_master) {
+  JOB j =
+      job_with("seat", "input/press_fit/press_fit.geo",
+               "*PARAMETER\nN = 8\nM = 11\n*MESH, FILE=press_fit.geo\n"
+               "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+               "*SOLID SECTION, ELSET=RING, MATERIAL=M\n"
+               "*SOLID SECTION, ELSET=HUB, MATERIAL=M\n"
+               "*CONTACT PAIR, NAME=P, ADJUST=YES\nSEAT, BORE\nCLEARANCE, 1.\n"
+               "*STEP\n*STATIC\n*BOUNDARY\nFLAT X, 1\nFLAT Y, 2\n"
+               "*PRINT, CONTACT\n*END STEP\n");
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
   char *lst = job_file(&j, "lst"), *pair = strstr(lst, " slave SEAT (");
   ck_assert_ptr_nonnull(pair);
   pair = strstr(pair, "), master BORE, nodes moved by up to 0.0");
   ck_assert_ptr_nonnull(pair);
   free(lst);
-  dat c = job_table(&j, "CONTACT", -1);
+  DAT c = job_table(&j, "CONTACT", -1);
   ck_assert_int_eq(c.n_row, 9);
   for (int i = 0; i < c.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 1, 3e-5);
@@ -585,38 +535,30 @@ START_TEST(adjusted_nodes_are_on_the_master) {
     const double x = dat_at(&c, i, "x"), y = dat_at(&c, i, "y");
     ck_assert(fmin(x, y) == 0 || fmin(x, y) > 1);
   }
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* The seat of a tie is moved as that of a pair. */
-START_TEST(adjusted_nodes_are_tied) {
-  job j = job_begin("tied");
-  job_copy(&j, "input/press_fit/press_fit.geo");
-  job_write(&j, "tied.inp",
-            "*PARAMETER\nN = 8\nM = 11\n*MESH, FILE=press_fit.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=RING, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=HUB, MATERIAL=M\n"
-            "*TIE, NAME=P, ADJUST=YES\nSEAT, BORE\n*STEP\n*STATIC\n"
-            "*BOUNDARY\nFLAT X, 1\nFLAT Y, 2\n*PRINT, NODES\n*END STEP\n");
+TEST(adjusted_nodes_are_tied) {
+  JOB j =
+      job_with("tied", "input/press_fit/press_fit.geo",
+               "*PARAMETER\nN = 8\nM = 11\n*MESH, FILE=press_fit.geo\n"
+               "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+               "*SOLID SECTION, ELSET=RING, MATERIAL=M\n"
+               "*SOLID SECTION, ELSET=HUB, MATERIAL=M\n"
+               "*TIE, NAME=P, ADJUST=YES\nSEAT, BORE\n*STEP\n*STATIC\n"
+               "*BOUNDARY\nFLAT X, 1\nFLAT Y, 2\n*PRINT, NODES\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
-  char *text = job_file(&j, "lst");
+  FREED char *text = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(text, "nodes moved by up to 0.0302"));
-  free(text);
-  job_end(&j);
 }
-END_TEST
 
 /* Three blocks 0.1 apart: of the pair that asks for it the nodes are moved, of
  * the other the gap stays. */
-START_TEST(one_of_two_pairs_is_adjusted) {
+TESTS(one_of_two_pairs_is_adjusted, 2) {
   const mesh_change none = {.scale = 0};
-  char path[100];
-  int *number = NULL;
-  job j = job_begin("stack");
-  snprintf(path, sizeof path, "%s/stack.msh", j.dir);
+  FREED int *number = NULL;
+  JOB j = job_begin("stack");
+  PRINTED(path, "%s/stack.msh", j.dir);
   FILE *to = fopen(path, "w");
   ck_assert_ptr_nonnull(to);
   ck_assert(scene_mesh_write(to,
@@ -624,7 +566,6 @@ START_TEST(one_of_two_pairs_is_adjusted) {
                              "rect 4 2 1 1 at 0 2.2",
                              &none, &number));
   fclose(to);
-  free(number);
   job_write(&j, "stack.inp",
             "*MESH, FILE=stack.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -636,47 +577,39 @@ START_TEST(one_of_two_pairs_is_adjusted) {
             "*PRINT, CONTACT\n*END STEP\n",
             _i == 0 ? ", ADJUST=YES" : "", _i == 1 ? ", ADJUST=YES" : "");
   ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
-  dat t = job_table(&j, "CONTACT", -1);
+  DAT t = job_table(&j, "CONTACT", -1);
   ck_assert_int_eq(t.n_row, 10);
   for (int i = 0; i < 10; ++i)
     ck_assert_double_eq_tol(dat_at(&t, i, "gap"),
                             dat_at(&t, i, "contact_no") == _i + 1 ? 0 : 0.1,
                             1e-12);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* Faces of two meshes of one seat are up to 0.02 apart, the interference is a
  * tenth of that: the pressure is that of Lame all round. */
-START_TEST(a_fit_is_that_of_the_curve_not_of_the_facets) {
+TEST(a_fit_is_that_of_the_curve_not_of_the_facets) {
   const double a = 10, b = 20, c = 40, stiff = 1000 / (1 - 0.09), fit = 2e-3;
   const double exact = stiff * fit / (2 * b) * (b * b - a * a) *
                        (c * c - b * b) / (b * b * (c * c - a * a));
-  job j = job_begin("seat");
-  job_copy(&j, "input/press_fit/press_fit.geo");
-  job_write(&j, "seat.inp",
-            "*PARAMETER\nN = 16\nM = 23\n*MESH, FILE=press_fit.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=RING, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=HUB, MATERIAL=M\n"
-            "*CONTACT PAIR, NAME=P\nSEAT, BORE\nINTERFERENCE, %g\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nFLAT X, 1\nFLAT Y, 2\n"
-            "*PRINT, CONTACT\n*END STEP\n",
-            fit);
+  JOB j = job_with("seat", "input/press_fit/press_fit.geo",
+                   "*PARAMETER\nN = 16\nM = 23\n*MESH, FILE=press_fit.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+                   "*SOLID SECTION, ELSET=RING, MATERIAL=M\n"
+                   "*SOLID SECTION, ELSET=HUB, MATERIAL=M\n"
+                   "*CONTACT PAIR, NAME=P\nSEAT, BORE\nINTERFERENCE, %g\n"
+                   "*STEP\n*STATIC\n*BOUNDARY\nFLAT X, 1\nFLAT Y, 2\n"
+                   "*PRINT, CONTACT\n*END STEP\n",
+                   fit);
   ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
-  dat t = job_table(&j, "CONTACT", -1);
+  DAT t = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < t.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&t, i, "pressure") / exact, 1.0, 0.06);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A wedge between the bodies, closed by their interference: the moment that is
  * left, of forces along the mean of both normals, is that of the pair alone,
  * also at the corner that touches the wall first. */
-START_TEST(moment_of_both_sides_is_that_of_the_pair) {
+TEST(moment_of_both_sides_is_that_of_the_pair) {
   const scene s = {"pair",
                    "N = 4\nM = 6\nL = 0.02",
                    ", TYPE=CPE3",
@@ -686,19 +619,16 @@ START_TEST(moment_of_both_sides_is_that_of_the_pair) {
                             "INTERFERENCE, 0.03\n",
                    "BOTTOM, 2\n",
                    "TOP, P, 3.\nRIGHT, P, 1.\n"};
-  job j = run_scene(&s, "--no-timing");
-  dat t = job_table(&j, "TOTALS", -1);
+  JOB j = run_scene(&s, "--no-timing");
+  DAT t = job_table(&j, "TOTALS", -1);
   ck_assert_int_eq(t.n_row, 2);
   ck_assert_double_eq(dat_at(&t, 0, "moment_of_both"), 0);
   ck_assert_double_gt(dat_at(&t, 1, "moment_of_both"), 1e-5);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* ---- what is refused ----------------------------------------------------- */
 
-START_TEST(bad_pairs_are_told) {
+TESTS(bad_pairs_are_told, 16) {
   static const struct {
     const char *cards, *message;
     int code;
@@ -726,26 +656,23 @@ START_TEST(bad_pairs_are_told) {
        "are up to 0.3 apart", 2},
       /* the sides of one body */
       {"*CONTACT PAIR, NAME=P\nRIGHT, LEFT\n", "P4023", 2}};
-  job j = job_begin("bad");
-  job_copy(&j, "tests/regression/mesh/pair.geo");
-  job_write(&j, "bad.inp",
-            "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
-            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n%s"
-            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 2\n"
-            "*DLOAD\nUPPER, BY, -1.\n*PRINT, TOTALS\n*END STEP\n",
-            cases[_i].cards);
+  JOB j =
+      job_with("bad", "tests/regression/mesh/pair.geo",
+               "*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
+               "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+               "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n%s"
+               "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 2\n"
+               "*DLOAD\nUPPER, BY, -1.\n*PRINT, TOTALS\n*END STEP\n",
+               cases[_i].cards);
   int code = job_run(&j, "--no-timing");
   ck_assert_msg(
       code == cases[_i].code && strstr(j.errors, cases[_i].message) != NULL,
       "exit %d: %s", code, j.errors);
-  job_end(&j);
 }
-END_TEST
 
 /* A force of 0.5 along x, or y, across a gap of 0.1 along z. */
-START_TEST(moment_in_space_is_about_any_axis) {
-  job j = job_begin("cubes");
+TESTS(moment_in_space_is_about_any_axis, 2) {
+  JOB j = job_begin("cubes");
   job_write(&j, "cubes.geo",
             "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\n"
             "Box(2) = {0, 0, 1.1, 1, 1, 1};\n"
@@ -763,35 +690,9 @@ START_TEST(moment_in_space_is_about_any_axis) {
             "*BOUNDARY\nBOTTOM, 1, 3\n*DSLOAD\nTOP, P, 3.\nTOP, T%c, 0.5\n"
             "*PRINT, TOTALS\n*END STEP\n",
             _i == 0 ? 'X' : 'Y');
-  const int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat t = job_table(&j, "TOTALS", -1);
-  ck_assert_double_eq_tol(dat_at(&t, 0, "moment_of_both"), 0.05, 1e-9);
-  dat_free(&t);
-  job_end(&j);
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
+  ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "moment_of_both"), 0.05,
+                          1e-9);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("pairs");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, patch, 0, sizeof patches / sizeof *patches);
-  tcase_add_test(tests, supports_hold_components_of_tied_nodes);
-  tcase_add_test(tests, reactions_of_a_tied_body_are_at_its_master);
-  tcase_add_loop_test(
-      tests, initial_displacements_of_tied_bodies_are_compatible, 0, 2);
-  tcase_add_loop_test(tests, node_of_two_ties_is_of_the_first, 0, 4);
-  tcase_add_loop_test(tests, slave_is_chosen, 0, 30);
-  tcase_add_loop_test(tests, held_master_is_a_plane, 0, 6);
-  tcase_add_test(tests, restart_is_bit_for_bit);
-  tcase_add_loop_test(tests, interference_and_clearance, 0, 4);
-  tcase_add_test(tests, depth_is_told_beyond_that_of_facets);
-  tcase_add_test(tests, adjusted_nodes_are_on_the_master);
-  tcase_add_test(tests, adjusted_nodes_are_tied);
-  tcase_add_loop_test(tests, one_of_two_pairs_is_adjusted, 0, 2);
-  tcase_add_test(tests, a_fit_is_that_of_the_curve_not_of_the_facets);
-  tcase_add_test(tests, moment_of_both_sides_is_that_of_the_pair);
-  tcase_add_loop_test(tests, moment_in_space_is_about_any_axis, 0, 2);
-  tcase_add_loop_test(tests, bad_pairs_are_told, 0, 16);
-  return unit_run("pairs", tests);
-}
+UNIT_MAIN("pairs")

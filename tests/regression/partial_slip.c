@@ -3,7 +3,6 @@
  * Poisson's ratios and friction coefficients than the examples: indentation
  * (Spence), shear (Cattaneo, Mindlin), torsion (Lubkin), sliding (Johnson 8.3).
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -17,7 +16,7 @@ static double hertz_line(double P, double nu) {
 }
 
 /* Self-similar indentation: c/a and P/P_Hertz(a) of the full coupling. */
-START_TEST(stick_grows_with_the_indentation) {
+TEST(stick_grows_with_the_indentation) {
   static const struct {
     double nu, mu, k, load;
   } cases[] = {{0.3, 0.2, 0.360385, 1.0355},
@@ -25,11 +24,10 @@ START_TEST(stick_grows_with_the_indentation) {
                {0.0, 0.5, 0.521908, 1.1465},
                {0.2, 0.5, 0.802495, 1.0970}};
   for (int i = unit_whole() ? 0 : 3; i < 4; ++i) {
-    char words[120];
-    snprintf(words, sizeof words, "-D NU=%g -D MU=%g%s", cases[i].nu,
-             cases[i].mu, unit_whole() ? "" : " -D NC=32");
-    job j = job_deck("input/spence/spence", words);
-    dat z = job_table(&j, "ZONES", -1), t = job_table(&j, "TOTALS", -1);
+    PRINTED(words, "-D NU=%g -D MU=%g%s", cases[i].nu, cases[i].mu,
+            unit_whole() ? "" : " -D NC=32");
+    JOB j = job_deck("input/spence/spence", words);
+    DAT z = job_table(&j, "ZONES", -1), t = job_table(&j, "TOTALS", -1);
     double hertz = hertz_line(2 * dat_at(&t, 0, "force_y"), cases[i].nu);
     double a = hertz / sqrt(cases[i].load);
     int stick = dat_zone(&z, 2), slip = dat_zone(&z, 1);
@@ -37,38 +35,29 @@ START_TEST(stick_grows_with_the_indentation) {
                             5e-3 * cases[i].k * a);
     ck_assert_double_eq_tol(dat_at(&z, slip, "x_to"), a, 5e-3 * a);
     ck_assert_double_eq(dat_at(&z, slip, "direction"), -1.0);
-    dat_free(&z);
-    dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* c/a = sqrt(1 - Q/(mu P)), heat per cycle W E* / (mu P)^2. */
-START_TEST(shear_cycle_gives_its_heat) {
+TEST(shear_cycle_gives_its_heat) {
   static const struct {
     double share, W, nu, mu;
   } cases[] = {{0.25, 3.805007e-3, 0.1, 0.15},
                {0.5, 0.036193629, 0.2, 0.6},
                {0.9, 0.337079335, 0.0, 0.3}};
   for (int i = unit_whole() ? 0 : 2; i < 3; ++i) {
-    char words[160];
     double nu = cases[i].nu, muP = 1000 * cases[i].mu;
-    snprintf(words, sizeof words, "-D SHARE=%g -D NU=%g -D MU=%g -D DT=0.25%s",
-             cases[i].share, nu, cases[i].mu, unit_whole() ? "" : " -D NC=20");
-    job j = job_deck("input/mindlin_loop/mindlin_loop", words);
-    dat z = job_table(&j, "ZONES", -1), l = job_table(&j, "LOOP", -1);
+    PRINTED(words, "-D SHARE=%g -D NU=%g -D MU=%g -D DT=0.25%s", cases[i].share,
+            nu, cases[i].mu, unit_whole() ? "" : " -D NC=20");
+    JOB j = job_deck("input/mindlin_loop/mindlin_loop", words);
+    DAT z = job_table(&j, "ZONES", -1), l = job_table(&j, "LOOP", -1);
     double a = hertz_line(1000, nu);
     double W = cases[i].W * muP * muP * (1 - nu * nu) / young;
     ck_assert_double_eq_tol(dat_at(&l, 0, "loop_area"), W, 0.02 * W);
     ck_assert_double_eq_tol(dat_at(&z, dat_zone(&z, 2), "extent") / 2,
                             a * sqrt(1 - cases[i].share), 0.02 * a);
-    dat_free(&z);
-    dat_free(&l);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* K - E of the modulus sqrt(1 - s^2) by the mean of Gauss; 0 for s = 1. */
 static double elliptic(double s) {
@@ -96,14 +85,12 @@ static double lubkin_torque(double c) {
 }
 
 /* Angle 3 mu P / (4 pi G a^2) (K - E); full slip 3 pi / 16 mu P a. */
-START_TEST(torsion_gives_its_torque) {
+TEST(torsion_gives_its_torque) {
   const double stick = 0.75, mu = 0.6;
   ck_assert_double_eq_tol(lubkin_torque(1e-9), 3 * acos(-1.0) / 16, 1e-6);
-  char words[120];
-  snprintf(words, sizeof words, "-D KE=%.12g -D MU=%g -D DT=0.2 -D NC=7",
-           elliptic(stick), mu);
-  job j = job_deck("input/torsion_sphere_3d/torsion_sphere_3d", words);
-  dat t = job_table(&j, "TOTALS", -1), l = job_table(&j, "LOOP", -1);
+  PRINTED(words, "-D KE=%.12g -D MU=%g -D DT=0.2 -D NC=7", elliptic(stick), mu);
+  JOB j = job_deck("input/torsion_sphere_3d/torsion_sphere_3d", words);
+  DAT t = job_table(&j, "TOTALS", -1), l = job_table(&j, "LOOP", -1);
   double P = dat_at(&t, 0, "normal"), Es = young / 0.91, G = young / 2.6;
   double a = cbrt(3 * P * radius / (4 * Es)), low = 1e-9, high = 1;
   /* The stick radius that belongs to the angle under the force found. */
@@ -117,27 +104,21 @@ START_TEST(torsion_gives_its_torque) {
   ck_assert_double_eq_tol(P, 1000, 20);
   ck_assert_double_eq_tol(low, stick, 0.01);
   ck_assert_double_eq_tol(dat_at(&t, 0, "torque"), T, 0.015 * T);
-  dat_free(&t);
-  dat_free(&l);
-  job_end(&j);
 }
-END_TEST
 
 /* tan(pi e) = mu (1 - 2 nu)/(2 - 2 nu); pressure of Johnson 8.3. The
  * elements next to the steep end, a/40 long, are left out. */
-START_TEST(sliding_contact_is_shifted_by_friction) {
+TEST(sliding_contact_is_shifted_by_friction) {
   static const double nu[] = {0.3, 0.3, 0.0, 0.1}, mu[] = {0.5, 1.0, 0.4, 0.8};
   static const double known[] = {0.04516724, 0.08858553, 0.0, 0.0};
   for (int i = unit_whole() ? 0 : 1; i < (unit_whole() ? 4 : 2); ++i) {
-    char words[120];
     const double pi = acos(-1.0), Es = young / (1 - nu[i] * nu[i]);
     double e = atan(mu[i] * (1 - 2 * nu[i]) / (2 - 2 * nu[i])) / pi;
-    snprintf(words, sizeof words, "-D NU=%g -D MU=0.2 -D DMU=%.17g", nu[i],
-             mu[i] - 0.2);
+    PRINTED(words, "-D NU=%g -D MU=0.2 -D DMU=%.17g", nu[i], mu[i] - 0.2);
     if (known[i] > 0) ck_assert_double_eq_tol(e, known[i], 1e-8);
-    job j = job_deck("input/belt/belt", words);
-    dat c = job_table(&j, "CONTACT", -1), z = job_table(&j, "ZONES", -1);
-    dat t = job_table(&j, "TOTALS", -1);
+    JOB j = job_deck("input/belt/belt", words);
+    DAT c = job_table(&j, "CONTACT", -1), z = job_table(&j, "ZONES", -1);
+    DAT t = job_table(&j, "TOTALS", -1);
     double N = dat_at(&t, 0, "normal");
     double l = hertz_line(N, nu[i]) / sqrt(1 - 4 * e * e);
     ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), mu[i] * N, 1e-8 * N);
@@ -153,14 +134,7 @@ START_TEST(sliding_contact_is_shifted_by_friction) {
       ck_assert_double_eq_tol(dat_at(&c, k, "pressure"), p,
                               0.01 * Es * l / (2 * radius));
     }
-    dat_free(&c);
-    dat_free(&z);
-    dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
-UNIT_MAIN("partial_slip", stick_grows_with_the_indentation,
-          shear_cycle_gives_its_heat, torsion_gives_its_torque,
-          sliding_contact_is_shifted_by_friction)
+UNIT_MAIN("partial_slip")

@@ -1,12 +1,9 @@
 /*
  * *ACCURACY, TARGET=: when a next pass is made, from the table of the passes.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <sys/resource.h>
 
 const int job_without_fields = 1;
 
@@ -36,13 +33,6 @@ static passes passes_of(const job *j) {
   return p;
 }
 
-static double cpu_of_jobs(void) {
-  struct rusage r;
-  ck_assert_int_eq(getrusage(RUSAGE_CHILDREN, &r), 0);
-  return (double)(r.ru_utime.tv_sec + r.ru_stime.tv_sec) +
-         1e-6 * (double)(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
-}
-
 /*
  * No mesh resolves the temperatures: errors scatter from pass to pass. Two in a
  * row that gain less than 5 % of the error end it, if their mesh has more than
@@ -50,8 +40,8 @@ static double cpu_of_jobs(void) {
  * half the square of the error. Where the estimate counts twice nothing is
  * known of the gain.
  */
-START_TEST(two_passes_in_a_row_without_a_gain_end_it) {
-  job j = job_begin("noise");
+TEST(two_passes_in_a_row_without_a_gain_end_it) {
+  JOB j = job_begin("noise");
   int in_a_row = 0, longest = 0, single = 0;
   block_file_write(&j, (int[]){1, 1}, (double[]){1.0, 1.0}, 0);
   job_write(&j, "noise.inp",
@@ -61,9 +51,9 @@ START_TEST(two_passes_in_a_row_without_a_gain_end_it) {
             "BODY, \"sin(766549*x+17267*y)\"\n"
             "*ACCURACY, TARGET=52, MAX_PASSES=%d\n*END STEP\n",
             MOST);
-  double cpu = -cpu_of_jobs(), gained = 0.0;
+  double cpu = -job_cpu(), gained = 0.0;
   ck_assert_int_eq(job_run(&j, ""), 1);
-  cpu += cpu_of_jobs();
+  cpu += job_cpu();
   ck_assert_ptr_nonnull(strstr(j.errors, "finer has no smaller error"));
   const passes p = passes_of(&j);
   for (int k = 0; k < p.n; ++k) {
@@ -81,9 +71,7 @@ START_TEST(two_passes_in_a_row_without_a_gain_end_it) {
   ck_assert_int_eq(longest, 2);
   ck_assert_int_gt(single, 0);
   ck_assert_double_ge(cpu, 0.0);
-  job_end(&j);
 }
-END_TEST
 
 /* A block on an inclined floor whose mesh has its share of 12 %, the solver
  * more. */
@@ -107,20 +95,18 @@ static passes run_slanted(job *j, const char *before, const char *step,
 
 /* Seconds of a next pass, which has the same mesh, are those of this one, and
  * come after them. */
-START_TEST(seconds_that_a_pass_has_taken_count) {
+TEST(seconds_that_a_pass_has_taken_count) {
   static const char says[] = "done after about ";
-  job j;
+  JOB j;
   const passes p = run_slanted(&j, "", "STATIC", "TARGET=12, MAX_CPU=1E-9");
   const char *at = strstr(j.errors, says);
   ck_assert_msg(p.n == 1 && at != NULL, "%s", j.errors);
   ck_assert_double_gt(atof(at + strlen(says)), 1.8 * p.cpu[0]);
-  job_end(&j);
 }
-END_TEST
 
 /* No other pass would know it. */
-START_TEST(pass_whose_error_is_unknown_is_the_last) {
-  job j;
+TEST(pass_whose_error_is_unknown_is_the_last) {
+  JOB j;
   const passes p = run_slanted(&j,
                                "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\n"
                                "TOP, 1, 2\n*ACCURACY, SOLVER=NO\n*END STEP\n",
@@ -130,10 +116,6 @@ START_TEST(pass_whose_error_is_unknown_is_the_last) {
                        "the error is unknown, the target 12 %: the "
                        "solver has no bound of its error") != NULL,
                 "%s", j.errors);
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("passes", two_passes_in_a_row_without_a_gain_end_it,
-          seconds_that_a_pass_has_taken_count,
-          pass_whose_error_is_unknown_is_the_last)
+UNIT_MAIN("passes")

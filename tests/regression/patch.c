@@ -3,7 +3,6 @@
  * unilateral contact with and without friction. Expected values are the
  * closed forms of homogeneous elasticity (E = 1000, load 10), derived below.
  */
-#include "base/base.h"
 #include "support/folder.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -43,8 +42,7 @@ typedef struct block {
 
 static job run_block(const block *b, const char *words, int expected) {
   job j = job_begin("patch");
-  char path[128];
-  snprintf(path, sizeof path, "tests/regression/mesh/%s", b->geo);
+  PRINTED(path, "tests/regression/mesh/%s", b->geo);
   job_copy(&j, path);
   job_write(&j, "patch.inp",
             "*PARAMETER\n%s\n*MESH, FILE=%s\n*MATERIAL, NAME=M\n*ELASTIC\n"
@@ -54,8 +52,7 @@ static job run_block(const block *b, const char *words, int expected) {
             b->numbers, b->geo, b->nu,
             b->averaged ? "*INELASTIC, LAW=MAXWELL\n1.\n" : "", b->section,
             b->averaged ? AVERAGED : "", b->floor, b->friction, b->step);
-  int code = job_run(&j, words);
-  ck_assert_msg(code == expected, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, words), expected, j);
   return j;
 }
 
@@ -68,7 +65,7 @@ enum { MESHES = sizeof meshes / sizeof *meshes };
 
 /* (a) nu = 0 pressed by 10: u_y = -10 y / E, node forces 10 times their
  * tributary lengths, no shear; any friction. */
-START_TEST(pressed_block_without_poisson) {
+TESTS(pressed_block_without_poisson, 2) {
   static const char *const friction[] = {"", COULOMB(0.0), COULOMB(0.3),
                                          COULOMB(1.0e6)};
   for (int k = _i; k < MESHES; k += 1 + _i)
@@ -81,8 +78,8 @@ START_TEST(pressed_block_without_poisson) {
                  friction[f],
                  "*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
                  _i};
-      job j = run_block(&b, "", 0);
-      dat u = job_table(&j, "NODES", -1), c = job_table(&j, "CONTACT", -1);
+      JOB j = run_block(&b, "", 0);
+      DAT u = job_table(&j, "NODES", -1), c = job_table(&j, "CONTACT", -1);
       field exact = {{0}, {0, 0, -10.0 / E}};
       ck_assert_double_le(field_error(&u, 2, exact), 1e-10);
       int n = c.n_row - 1; /* segments of equal length */
@@ -93,15 +90,11 @@ START_TEST(pressed_block_without_poisson) {
                                 10.0 / n * (end ? 0.5 : 1.0), 1e-9);
         ck_assert_double_le(fabs(dat_at(&c, i, "f_t")), 1e-9);
       }
-      dat_free(&u);
-      dat_free(&c);
-      job_end(&j);
     }
 }
-END_TEST
 
 /* (b) frictionless with nu = 0.3: uniaxial stress -10, free to widen. */
-START_TEST(widening_block_in_all_kinematics) {
+TESTS(widening_block_in_all_kinematics, 2) {
   const double nu = 0.3, p = 10.0;
   const struct {
     const char *section;
@@ -119,20 +112,16 @@ START_TEST(widening_block_in_all_kinematics) {
                  "",
                  "*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
                  _i};
-      job j = run_block(&b, "", 0);
-      dat u = job_table(&j, "NODES", -1);
+      JOB j = run_block(&b, "", 0);
+      DAT u = job_table(&j, "NODES", -1);
       field exact = {{0, kind[s].ex, 0}, {0, 0, kind[s].ey}};
       ck_assert_double_le(field_error(&u, 2, exact), 1e-10);
-      char *lst = job_file(&j, "lst"); /* all errors are rounding */
+      FREED char *lst = job_file(&j, "lst"); /* all errors are rounding */
       ck_assert_ptr_null(strstr(lst, "improve next"));
-      free(lst);
-      dat_free(&u);
-      job_end(&j);
     }
 }
-END_TEST
 
-START_TEST(widening_cylinder) {
+TESTS(widening_cylinder, 2) {
   const double nu = 0.3, p = 10.0;
   for (int k = _i; k < MESHES; k += 1 + _i) {
     block b = {"square.geo",
@@ -143,8 +132,8 @@ START_TEST(widening_cylinder) {
                "",
                "*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
                _i};
-    job j = run_block(&b, "", 0);
-    dat u = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
+    JOB j = run_block(&b, "", 0);
+    DAT u = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
     for (int i = 0; i < u.n_row; ++i) {
       double r = dat_at(&u, i, "r"), z = dat_at(&u, i, "z");
       ck_assert_double_eq_tol(dat_at(&u, i, "u_r"), nu * p / E * r, 1e-12);
@@ -152,14 +141,10 @@ START_TEST(widening_cylinder) {
     }
     /* p times the area of the disc of radius 1. */
     ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), p * acos(-1.0), 1e-9);
-    dat_free(&u);
-    dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
-START_TEST(widening_cube) {
+TESTS(widening_cube, 2) {
   const double nu = 0.3, p = 10.0;
   block b = {"cube.geo",
              "N = 3",
@@ -169,26 +154,21 @@ START_TEST(widening_cube) {
              "",
              "*STATIC\n*BOUNDARY\nLEFT, 1\nFRONT, 2\n*DSLOAD\nTOP, P, 10.\n",
              _i};
-  job j = run_block(&b, "", 0);
-  dat u = job_table(&j, "NODES", -1);
+  JOB j = run_block(&b, "", 0);
+  DAT u = job_table(&j, "NODES", -1);
   field exact = {
       {0, nu * p / E, 0, 0}, {0, 0, nu * p / E, 0}, {0, 0, 0, -p / E}};
   ck_assert_double_le(field_error(&u, 3, exact), 1e-10);
-  dat_free(&u);
-  job_end(&j);
 }
-END_TEST
 
 /* (c) floor and wall, both unilateral: the corner node touches two obstacles.
  * Plane strain under px on x = 1 and py on y = 1. */
-START_TEST(redundant_corner) {
+TESTS(redundant_corner, 2) {
   const double nu = 0.3, py = 10.0;
   for (int k = _i; k < MESHES; k += 1 + _i)
     for (int pushed = 0; pushed < 2; ++pushed) {
       double px = pushed ? 4.0 : 0.0;
-      char step[128];
-      snprintf(step, sizeof step,
-               "*STATIC\n*DSLOAD\nRIGHT, P, %g\nTOP, P, %g\n", px, py);
+      PRINTED(step, "*STATIC\n*DSLOAD\nRIGHT, P, %g\nTOP, P, %g\n", px, py);
       block b = {"square.geo",
                  meshes[k],
                  nu,
@@ -197,8 +177,8 @@ START_TEST(redundant_corner) {
                  "",
                  step,
                  _i};
-      job j = run_block(&b, "", 0);
-      dat u = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
+      JOB j = run_block(&b, "", 0);
+      DAT u = job_table(&j, "NODES", -1), t = job_table(&j, "TOTALS", -1);
       double ex = -(1 + nu) / E * ((1 - nu) * px - nu * py);
       double ey = -(1 + nu) / E * ((1 - nu) * py - nu * px);
       field exact = {{0, ex, 0}, {0, 0, ey}};
@@ -206,15 +186,11 @@ START_TEST(redundant_corner) {
       ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), py, 1e-9);
       ck_assert_double_eq_tol(
           dat_at(&t, 0, "force_x") + dat_at(&t, 1, "force_x"), px, 1e-9);
-      dat_free(&u);
-      dat_free(&t);
-      job_end(&j);
     }
 }
-END_TEST
 
 /* (d) as (a) with no Dirichlet at all; without friction nothing holds x. */
-START_TEST(contact_alone_holds_the_block) {
+TESTS(contact_alone_holds_the_block, 2) {
   static const char *const friction[] = {COULOMB(0.01), COULOMB(0.3),
                                          COULOMB(10.0)};
   for (int k = _i; k < MESHES; k += 1 + _i) {
@@ -227,12 +203,10 @@ START_TEST(contact_alone_holds_the_block) {
                  friction[f],
                  "*STATIC\n*DSLOAD\nTOP, P, 10.\n",
                  _i};
-      job j = run_block(&b, "", 0);
-      dat u = job_table(&j, "NODES", -1);
+      JOB j = run_block(&b, "", 0);
+      DAT u = job_table(&j, "NODES", -1);
       field exact = {{0}, {0, 0, -10.0 / E}};
       ck_assert_double_le(field_error(&u, 2, exact), 1e-10);
-      dat_free(&u);
-      job_end(&j);
     }
     block b = {"square.geo",
                meshes[k],
@@ -242,15 +216,13 @@ START_TEST(contact_alone_holds_the_block) {
                "",
                "*STATIC\n*DSLOAD\nTOP, P, 10.\n",
                _i};
-    job j = run_block(&b, "", 6);
+    JOB j = run_block(&b, "", 6);
     ck_assert_ptr_nonnull(strstr(j.errors, "translation along x"));
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Elements of aspect 1e4: the same patches to 1e-6. */
-START_TEST(slivers_keep_the_patch) {
+TESTS(slivers_keep_the_patch, 2) {
   block b = {"square.geo",
              "N = 4\nKIND = 1\nLY = 1.E-4",
              0.3,
@@ -259,21 +231,18 @@ START_TEST(slivers_keep_the_patch) {
              "",
              "*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
              _i};
-  job j = run_block(&b, "", 0);
-  dat u = job_table(&j, "NODES", -1);
+  JOB j = run_block(&b, "", 0);
+  DAT u = job_table(&j, "NODES", -1);
   field exact = {{0, 0.3 * 1.3 * 10 / E, 0}, {0, 0, -0.91 * 10 / E}};
   ck_assert_double_le(field_error(&u, 2, exact), 1e-6);
-  dat_free(&u);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * Slip patch: nu = 0, top moved by Ux and pressed down by p H / E, shear mu p
  * on the sides. Then sigma_xy = mu p, u_x = Ux + (mu p / G)(y - H), and the
  * foot slips by Ux - mu p H / G = 0.004 for Ux = 0.01, mu = 0.3, p = 10.
  */
-START_TEST(slip_patch_in_the_plane) {
+TESTS(slip_patch_in_the_plane, 2) {
   for (int k = _i; k < MESHES; k += 1 + _i) {
     block b = {"square.geo",
                meshes[k],
@@ -284,8 +253,8 @@ START_TEST(slip_patch_in_the_plane) {
                "*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.01\n"
                "TOP, 2, 2, -0.01\n*DSLOAD\nRIGHT, TY, 3.\nLEFT, TY, -3.\n",
                _i};
-    job j = run_block(&b, "", 0);
-    dat u = job_table(&j, "NODES", -1), c = job_table(&j, "CONTACT", -1);
+    JOB j = run_block(&b, "", 0);
+    DAT u = job_table(&j, "NODES", -1), c = job_table(&j, "CONTACT", -1);
     field exact = {{0.004, 0, 0.006}, {0, 0, -0.01}};
     ck_assert_double_le(field_error(&u, 2, exact), 1e-10);
     for (int i = 0; i < c.n_row; ++i) {
@@ -294,15 +263,11 @@ START_TEST(slip_patch_in_the_plane) {
       ck_assert_double_eq_tol(fabs(dat_at(&c, i, "slip")), 0.004, 1e-12);
       ck_assert_double_eq(dat_at(&c, i, "status"), 1.0);
     }
-    dat_free(&u);
-    dat_free(&c);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* The same held by friction: Ux = 0.005 < mu p H / G, shear G Ux / H. */
-START_TEST(stick_patch_in_the_plane) {
+TESTS(stick_patch_in_the_plane, 2) {
   block b = {"square.geo",
              meshes[1],
              0.0,
@@ -312,32 +277,27 @@ START_TEST(stick_patch_in_the_plane) {
              "*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nTOP, 1, 1, 0.005\n"
              "TOP, 2, 2, -0.01\n*DSLOAD\nRIGHT, TY, 2.5\nLEFT, TY, -2.5\n",
              _i};
-  job j = run_block(&b, "", 0);
-  dat u = job_table(&j, "NODES", -1), c = job_table(&j, "CONTACT", -1);
+  JOB j = run_block(&b, "", 0);
+  DAT u = job_table(&j, "NODES", -1), c = job_table(&j, "CONTACT", -1);
   field exact = {{0, 0, 0.005}, {0, 0, -0.01}};
   ck_assert_double_le(field_error(&u, 2, exact), 1e-10);
   for (int i = 0; i < c.n_row; ++i)
     ck_assert_double_eq(dat_at(&c, i, "status"), 2.0);
-  dat_free(&u);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* In 3-D along any direction: the cone is exact, no facets. */
-START_TEST(slip_patch_at_any_angle) {
+TESTS(slip_patch_at_any_angle, 2) {
   static const double degrees[] = {0.0, 17.0, 45.0, 100.0, 211.0};
   for (int k = _i; k < 5; k += 1 + 3 * _i) {
     double a = degrees[k] * acos(-1.0) / 180.0, c = cos(a), s = sin(a);
-    char step[512];
-    snprintf(step, sizeof step,
-             "*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, %.17g\n"
-             "TOP, 2, 2, %.17g\nTOP, 3, 3, -0.01\n*DSLOAD\nRIGHT, TZ, %.17g\n"
-             "LEFT, TZ, %.17g\nBACK, TZ, %.17g\nFRONT, TZ, %.17g\n",
-             0.01 * c, 0.01 * s, 3 * c, -3 * c, 3 * s, -3 * s);
+    PRINTED(step,
+            "*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, %.17g\n"
+            "TOP, 2, 2, %.17g\nTOP, 3, 3, -0.01\n*DSLOAD\nRIGHT, TZ, %.17g\n"
+            "LEFT, TZ, %.17g\nBACK, TZ, %.17g\nFRONT, TZ, %.17g\n",
+            0.01 * c, 0.01 * s, 3 * c, -3 * c, 3 * s, -3 * s);
     block b = {"cube.geo", "N = 3", 0.0, "", FLOOR, COULOMB(0.3), step, _i};
-    job j = run_block(&b, "", 0);
-    dat u = job_table(&j, "NODES", -1), t = job_table(&j, "CONTACT", -1);
+    JOB j = run_block(&b, "", 0);
+    DAT u = job_table(&j, "NODES", -1), t = job_table(&j, "CONTACT", -1);
     field exact = {{0.004 * c, 0, 0, 0.006 * c},
                    {0.004 * s, 0, 0, 0.006 * s},
                    {0, 0, 0, -0.01}};
@@ -347,15 +307,11 @@ START_TEST(slip_patch_at_any_angle) {
       ck_assert_double_eq_tol(dat_at(&t, i, "f_x"), -0.3 * c * n, 1e-10);
       ck_assert_double_eq_tol(dat_at(&t, i, "f_y"), -0.3 * s * n, 1e-10);
     }
-    dat_free(&u);
-    dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* What *ELASTIC alone averages near nu = 1/2: (b) in all kinematics. */
-START_TEST(nearly_incompressible_patches) {
+TEST(nearly_incompressible_patches) {
   const double nu = 0.4999, p = 10.0;
   static const char *const step =
       "*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n";
@@ -365,8 +321,8 @@ START_TEST(nearly_incompressible_patches) {
                  nu,           turned ? ", TYPE=CAX3" AVERAGED : AVERAGED,
                  FLOOR,        "",
                  step,         0};
-      job j = run_block(&b, "", 0);
-      dat u = job_table(&j, "NODES", -1);
+      JOB j = run_block(&b, "", 0);
+      DAT u = job_table(&j, "NODES", -1);
       for (int i = 0; i < u.n_row; ++i) {
         double wide = turned ? nu * p / E : nu * (1 + nu) * p / E;
         double deep = turned ? p / E : (1 - nu * nu) * p / E;
@@ -377,8 +333,6 @@ START_TEST(nearly_incompressible_patches) {
         ck_assert_double_eq_tol(dat_at(&u, i, turned ? "u_z" : "u_y"),
                                 -deep * y, 1e-11);
       }
-      dat_free(&u);
-      job_end(&j);
     }
   block b = {"cube.geo",
              "N = 4",
@@ -388,22 +342,18 @@ START_TEST(nearly_incompressible_patches) {
              "",
              "*STATIC\n*BOUNDARY\nLEFT, 1\nFRONT, 2\n*DSLOAD\nTOP, P, 10.\n",
              0};
-  job j = run_block(&b, "", 0);
-  dat u = job_table(&j, "NODES", -1);
+  JOB j = run_block(&b, "", 0);
+  DAT u = job_table(&j, "NODES", -1);
   field exact = {
       {0, nu * p / E, 0, 0}, {0, 0, nu * p / E, 0}, {0, 0, 0, -p / E}};
   ck_assert_double_le(field_error(&u, 3, exact), 1e-9);
-  dat_free(&u);
-  job_end(&j);
 }
-END_TEST
 
 /* Whole, by tests/preload/mesh.so where these programs have it: else each run
  * loads gmsh, and the suite takes twice its time. */
-START_TEST(a_mesh_is_kept_for_later_runs) {
+TEST(a_mesh_is_kept_for_later_runs) {
   if (getenv("PROTIS_MESH") == NULL || getenv("PROTIS_MESH")[0] == '\0') return;
-  char folder[64], command[128];
-  folder_new(folder);
+  FOLDER(folder);
   setenv("MESH_KEPT", folder, 1);
   block b = {"square.geo",
              meshes[0],
@@ -413,32 +363,10 @@ START_TEST(a_mesh_is_kept_for_later_runs) {
              "",
              "*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
              0};
-  job j = run_block(&b, "", 0);
-  snprintf(command, sizeof command, "ls %s | grep -vc '[.]'", folder);
+  JOB j = run_block(&b, "", 0);
+  PRINTED(command, "ls %s | grep -vc '[.]'", folder);
   ck_assert_int_eq(job_shell(&j, command), 0);
   ck_assert_str_eq(j.text, "1\n");
-  folder_remove(folder);
-  job_end(&j);
 }
-END_TEST
 
-/* All but the last two without and, on fewer meshes, with averages. */
-int main(void) {
-  const TTest *const both[] = {pressed_block_without_poisson,
-                               widening_block_in_all_kinematics,
-                               widening_cylinder,
-                               widening_cube,
-                               redundant_corner,
-                               contact_alone_holds_the_block,
-                               slivers_keep_the_patch,
-                               slip_patch_in_the_plane,
-                               stick_patch_in_the_plane,
-                               slip_patch_at_any_angle};
-  TCase *tests = tcase_create("patch");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  for (size_t i = 0; i < sizeof both / sizeof *both; ++i)
-    tcase_add_loop_test(tests, both[i], 0, 2);
-  tcase_add_test(tests, nearly_incompressible_patches);
-  tcase_add_test(tests, a_mesh_is_kept_for_later_runs);
-  return unit_run("patch", tests);
-}
+UNIT_MAIN("patch")

@@ -3,7 +3,6 @@
  * friction and bonded (friction that always sticks), plane and axisymmetric, in
  * closed form; a ball with friction (Spence).
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -39,8 +38,7 @@ static const char sizes[] =
 static job run_punch(const char *geo, const char *type, double nu, double mu,
                      const char *motion, const char *step) {
   job j = job_begin("punch");
-  char text[2000];
-  snprintf(text, sizeof text, "%s%s", geo, sizes);
+  PRINTED(text, "%s%s", geo, sizes);
   job_write(&j, "punch.geo", text, 0);
   job_write(&j, "punch.inp",
             "*MESH, FILE=punch.geo\n*MATERIAL, NAME=M\n*ELASTIC\n%g, %g\n"
@@ -50,8 +48,7 @@ static job run_punch(const char *geo, const char *type, double nu, double mu,
             "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*STATIC\n1.\n%s"
             "*PRINT, CONTACT, TOTALS\n*END STEP\n",
             young, nu, type, motion, mu, step);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
@@ -61,18 +58,17 @@ static job run_punch(const char *geo, const char *type, double nu, double mu,
  * and w = eta ln((1 + x)/(1 - x)), p = b cos w, |q| = b |sin w|,
  * b = 2 (1 - nu)/sqrt(3 - 4 nu) P/(pi sqrt(1 - x^2)) (Johnson 2.69).
  */
-START_TEST(plane_punch_has_its_tractions) {
+TEST(plane_punch_has_its_tractions) {
   static const double nu[] = {0.3, 0.3, 0.0, 0.45}, mu[] = {0, 1e6, 1e6, 1e6};
   const double pi = acos(-1.0);
   for (int i = 0; i < 4; ++i) {
-    char step[400];
-    snprintf(step, sizeof step,
-             "*BOUNDARY\nFAR, 1, 1, "
-             "\"(1+%g)/(pi*%g)*(x*y/900-(1-2*%g)*atan2(x,y))\"\n"
-             "*DSLOAD\nFAR, TY, \"-2/(pi*30^3)*y^2\"\n",
-             nu[i], young, nu[i]);
-    job j = run_punch(plane_geo, "CPE3", nu[i], mu[i], "", step);
-    dat c = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
+    PRINTED(step,
+            "*BOUNDARY\nFAR, 1, 1, "
+            "\"(1+%g)/(pi*%g)*(x*y/900-(1-2*%g)*atan2(x,y))\"\n"
+            "*DSLOAD\nFAR, TY, \"-2/(pi*30^3)*y^2\"\n",
+            nu[i], young, nu[i]);
+    JOB j = run_punch(plane_geo, "CPE3", nu[i], mu[i], "", step);
+    DAT c = job_table(&j, "CONTACT", -1), t = job_table(&j, "TOTALS", -1);
     double P = dat_at(&t, 0, "normal"), eta = log(3 - 4 * nu[i]) / (2 * pi);
     int compared = 0;
     if (nu[i] == 0.3) ck_assert_double_eq_tol(eta, 0.09354915, 1e-8);
@@ -89,29 +85,22 @@ START_TEST(plane_punch_has_its_tractions) {
       ++compared;
     }
     ck_assert_int_gt(compared, 30);
-    dat_free(&c);
-    dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Circular punch: P = 2 E* a delta without friction, bonded greater by
  * ln(3 - 4 nu) (1 - nu)/(1 - 2 nu). The fixed half ball of radius 60 takes
  * P/(pi E* 60) off the approach. */
-START_TEST(circular_punch_has_its_stiffness) {
+TEST(circular_punch_has_its_stiffness) {
   static const double nu[] = {0.3, 0.0, 0.4},
                       known[] = {1.02862666, 1.09861229, 1.00941671};
   for (int i = 0; i < 3; ++i) {
     double P[2], Es = young / (1 - nu[i] * nu[i]);
     for (int bonded = 0; bonded < 2; ++bonded) {
-      job j =
+      JOB j =
           run_punch(axial_geo, "CAX3", nu[i], bonded ? 1e6 : 0,
                     "MOVE, 0., 0.01\n", "*BOUNDARY\nFAR, 1, 2\nAXIS, 1, 1\n");
-      dat t = job_table(&j, "TOTALS", -1);
-      P[bonded] = dat_at(&t, 0, "normal");
-      dat_free(&t);
-      job_end(&j);
+      P[bonded] = job_value(&j, "TOTALS", -1, "normal");
     }
     double ratio = log(3 - 4 * nu[i]) * (1 - nu[i]) / (1 - 2 * nu[i]);
     ck_assert_double_eq_tol(ratio, known[i], 1e-8);
@@ -119,40 +108,33 @@ START_TEST(circular_punch_has_its_stiffness) {
     ck_assert_double_eq_tol(P[1] / P[0], ratio, 3e-3);
   }
 }
-END_TEST
 
 /* Half space and ball, the load grows in proportion to the approach: stick up
  * to c/a for nu, mu (Spence, axisymmetric, full coupling, to 3e-4). */
-START_TEST(ball_sticks_in_the_middle) {
+TEST(ball_sticks_in_the_middle) {
   static const double cases[][3] = {{0.3, 0.2, 0.698}, {0.0, 0.3, 0.5031}};
   for (int i = 0; i < 2; ++i) {
-    job j = job_begin("ball");
-    job_copy(&j, "input/spence/spence.geo");
-    job_write(&j, "ball.inp",
-              "*PARAMETER\nA = 0.25\nNC = 30\nSIZE = 40\n"
-              "*MESH, FILE=spence.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
-              "%g, %g\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
-              "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/20\"\n"
-              "MOVE, 0., \"t*A^2/10\"\n"
-              "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
-              "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n"
-              "*QUASISTATIC\n0.05, 1.\n*BOUNDARY\nSYMMETRY, 1\nFAR, 1, 2\n"
-              "*PRINT, ZONES, FREQUENCY=0\n*END STEP\n",
-              young, cases[i][0], cases[i][1]);
-    int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-    dat z = job_table(&j, "ZONES", -1);
+    JOB j =
+        job_with("ball", "input/spence/spence.geo",
+                 "*PARAMETER\nA = 0.25\nNC = 30\nSIZE = 40\n"
+                 "*MESH, FILE=spence.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+                 "%g, %g\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+                 "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/20\"\n"
+                 "MOVE, 0., \"t*A^2/10\"\n"
+                 "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+                 "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n"
+                 "*QUASISTATIC\n0.05, 1.\n*BOUNDARY\nSYMMETRY, 1\nFAR, 1, 2\n"
+                 "*PRINT, ZONES, FREQUENCY=0\n*END STEP\n",
+                 young, cases[i][0], cases[i][1]);
+    CK_EXIT(job_run(&j, ""), 0, j);
+    DAT z = job_table(&j, "ZONES", -1);
     ck_assert_double_eq(dat_at(&z, 0, "zone"), 2.0);
     ck_assert_double_eq(dat_at(&z, 1, "zone"), 1.0);
     double c = dat_at(&z, 0, "r_to"), a = dat_at(&z, 1, "r_to");
     ck_assert_double_eq_tol(c / a, cases[i][2], 0.015);
     ck_assert_double_eq_tol(dat_at(&z, 0, "area"), acos(-1.0) * c * c,
                             1e-9 * c * c);
-    dat_free(&z);
-    job_end(&j);
   }
 }
-END_TEST
 
-UNIT_MAIN("punch", ball_sticks_in_the_middle, plane_punch_has_its_tractions,
-          circular_punch_has_its_stiffness)
+UNIT_MAIN("punch")

@@ -4,7 +4,6 @@
  * second pass. The answer is that of the whole problem, which is what is solved
  * where the condensed problem is written (*OUTPUT, CONDENSED=FCLIB).
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/traced.h"
@@ -57,22 +56,19 @@ static job cantilever(const char *friction, const char *more) {
 }
 
 static void run(job *j, int expected) {
-  int code = job_run(j, "--no-timing");
-  ck_assert_msg(code == expected, "exit %d: %s", code, j->errors);
+  CK_EXIT(job_run(j, "--no-timing"), expected, *j);
 }
 
 /* Largest difference of a column of the last table over its largest entry. */
 static double apart(const job *a, const job *b, const char *name) {
   double most = 0.0, size = 0.0;
-  dat x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
+  DAT x = job_table(a, "CONTACT", -1), y = job_table(b, "CONTACT", -1);
   ck_assert_int_eq(x.n_row, y.n_row);
   for (int k = 0; k < x.n_row; ++k) {
     most = fmax(most, fabs(dat_at(&x, k, name) - dat_at(&y, k, name)));
     size = fmax(size, fabs(dat_at(&y, k, name)));
     ck_assert_double_eq(dat_at(&x, k, "status"), dat_at(&y, k, "status"));
   }
-  dat_free(&x);
-  dat_free(&y);
   return most / size;
 }
 
@@ -85,17 +81,16 @@ static void same_answer(const job *a, const job *b, double tol) {
 }
 
 static int notes(const job *j) {
-  char *text = job_file(j, "lst");
+  FREED char *text = job_file(j, "lst");
   int n = 0;
   for (char *at = text; (at = strstr(at, "inactive contact nodes")); ++at) ++n;
-  free(text);
   return n;
 }
 
 /* 81 candidates, of which 7 lie within 0.2 of the cylinder. */
 static void check_cylinder(const char *friction, double unknowns) {
   long few, all;
-  job a = on_cylinder(friction, ""), b = on_cylinder(friction, whole);
+  JOB a = on_cylinder(friction, ""), b = on_cylinder(friction, whole);
   ck_assert_int_eq(job_run(&a, ""), 0);
   ck_assert_int_eq(job_run(&b, ""), 0);
   ck_assert_double_eq(job_told(&a, "contact_nodes"), 81.0);
@@ -110,20 +105,15 @@ static void check_cylinder(const char *friction, double unknowns) {
     ck_assert_double_le(apart(&a, &b, "f_t"), 1e-10);
     ck_assert_double_le(apart(&a, &b, "slip_distance"), 1e-9);
   }
-  job_end(&a);
-  job_end(&b);
 }
 
-START_TEST(long_surface_costs_its_nodes_within_reach) {
-  check_cylinder("", 1.0);
-}
-END_TEST
+TEST(long_surface_costs_its_nodes_within_reach) { check_cylinder("", 1.0); }
 
 /* A thin body under thin loads moves as a thick one. */
-START_TEST(nodes_within_reach_are_those_of_any_thickness) {
+TEST(nodes_within_reach_are_those_of_any_thickness) {
   double n[2];
   for (int k = 0; k < 2; ++k) {
-    job j = job_begin("cylinder");
+    JOB j = job_begin("cylinder");
     block_file_write(&j, (int[]){80, 10}, (double[]){80.0, 20.0}, 0);
     job_write(
         &j, "cylinder.inp",
@@ -136,21 +126,16 @@ START_TEST(nodes_within_reach_are_those_of_any_thickness) {
         k == 0 ? "1." : "1E-6");
     ck_assert_int_eq(job_run(&j, ""), 0);
     n[k] = job_told(&j, "contact_unknowns");
-    job_end(&j);
   }
   ck_assert_double_lt(n[0], 81.0);
   ck_assert_double_eq(n[1], n[0]);
 }
-END_TEST
 
 /* Also what rubs where it touches. */
-START_TEST(rough_surface_costs_its_nodes_within_reach) {
-  check_cylinder(rough, 2.0);
-}
-END_TEST
+TEST(rough_surface_costs_its_nodes_within_reach) { check_cylinder(rough, 2.0); }
 
 static void check_cantilever(const char *friction, double unknowns) {
-  job a = cantilever(friction, ""), b = cantilever(friction, whole);
+  JOB a = cantilever(friction, ""), b = cantilever(friction, whole);
   run(&a, 0);
   run(&b, 0);
   ck_assert_double_le(job_told(&a, "contact_unknowns"), 24.0 * unknowns);
@@ -158,33 +143,24 @@ static void check_cantilever(const char *friction, double unknowns) {
   ck_assert_int_ge(passes, 1);
   ck_assert_int_gt(job_stage(&a, "condensed stiffness", NULL), passes);
   same_answer(&a, &b, 1e-9);
-  dat d = job_table(&a, "CONTACT", -1);
+  DAT d = job_table(&a, "CONTACT", -1);
   int touches = 0;
   for (int k = 0; k < d.n_row; ++k) {
     ck_assert_double_ge(dat_at(&d, k, "gap"), 0.0);
     touches += dat_at(&d, k, "f_n") > 0.0;
   }
   ck_assert_int_ge(touches, 2);
-  dat_free(&d);
-  job_end(&a);
-  job_end(&b);
 }
 
 /* Bending goes far beyond what loads over moduli promise. */
-START_TEST(nodes_that_reach_are_taken_in_a_second_pass) {
-  check_cantilever("", 1.0);
-}
-END_TEST
+TEST(nodes_that_reach_are_taken_in_a_second_pass) { check_cantilever("", 1.0); }
 
-START_TEST(rough_nodes_that_reach_are_taken_too) {
-  check_cantilever(rough, 2.0);
-}
-END_TEST
+TEST(rough_nodes_that_reach_are_taken_too) { check_cantilever(rough, 2.0); }
 
 /* Limits given whatever the pressure, or from the pressure around, act on nodes
  * that do not touch, points of time and halved increments have other loads: all
  * stay. */
-START_TEST(other_laws_keep_all_nodes) {
+TEST(other_laws_keep_all_nodes) {
   static const struct {
     const char *law, *more;
     double unknowns;
@@ -194,16 +170,14 @@ START_TEST(other_laws_keep_all_nodes) {
       {"*TIME POINTS, NAME=T\n0.3\n", "*PRINT, CONTACT, TIME POINTS=T\n", 81},
       {rough, "*ACCURACY, TIME=YES\n", 162}};
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
-    job j = on_cylinder(rows[k].law, rows[k].more);
+    JOB j = on_cylinder(rows[k].law, rows[k].more);
     run(&j, 0);
     ck_assert_double_eq(job_told(&j, "contact_unknowns"), rows[k].unknowns);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* So do those that something else than loads and supports moves or loads. */
-START_TEST(other_effects_keep_all_nodes) {
+TEST(other_effects_keep_all_nodes) {
   static const struct {
     const char *first, *step, *more;
   } rows[] = {
@@ -213,16 +187,14 @@ START_TEST(other_effects_keep_all_nodes) {
       {"*INITIAL CONDITIONS, TYPE=DISPLACEMENT\nTOP, 1, 0.\n", "QUASISTATIC",
        ""}};
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
-    job j = in_step(rows[k].first, "", rows[k].step, rows[k].more);
+    JOB j = in_step(rows[k].first, "", rows[k].step, rows[k].more);
     run(&j, 0);
     ck_assert_double_eq(job_told(&j, "contact_unknowns"), 81);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* What is cheap with the nodes first expected to touch may not fit with all. */
-START_TEST(stiffness_is_chosen_again_for_more_nodes) {
+TEST(stiffness_is_chosen_again_for_more_nodes) {
   static const char *const cards[] = {"*SOLVER, MAX_MEMORY=7\n",
                                       "*SOLVER, STIFFNESS=DENSE\n"};
   job j[2];
@@ -246,20 +218,18 @@ START_TEST(stiffness_is_chosen_again_for_more_nodes) {
               rough, cards[k]);
     run(&j[k], 0);
     ck_assert_int_ge(notes(&j[k]), 1);
-    char *listing = job_file(&j[k], "lst");
+    FREED char *listing = job_file(&j[k], "lst");
     ck_assert_ptr_nonnull(strstr(listing, " DENSE  "));
-    free(listing);
   }
   ck_assert_int_eq(job_stage(&j[0], "condensed stiffness", NULL), 1);
   ck_assert_int_eq(job_stage(&j[1], "condensed stiffness", NULL), 2);
   same_answer(&j[0], &j[1], 1e-9);
   for (int k = 0; k < 2; ++k) job_end(&j[k]);
 }
-END_TEST
 
 /* The most attempts at an increment. */
 static int attempts(const job *j) {
-  char *text = job_file(j, "sta");
+  FREED char *text = job_file(j, "sta");
   int most = 0;
   for (char *line = strtok(text, "\n"); line != NULL;
        line = strtok(NULL, "\n")) {
@@ -268,61 +238,45 @@ static int attempts(const job *j) {
         attempt > most)
       most = attempt;
   }
-  free(text);
   return most;
 }
 
 /* Sweeps too few for whole increments: they are cut, and all nodes taken. */
-START_TEST(increments_are_cut_with_all_nodes) {
-  job a = cantilever("", "*SOLVER, METHOD=SOR, MAX_ITER=300\n");
-  job b = cantilever("", whole);
+TEST(increments_are_cut_with_all_nodes) {
+  JOB a = cantilever("", "*SOLVER, METHOD=SOR, MAX_ITER=300\n");
+  JOB b = cantilever("", whole);
   ck_assert_int_le(job_run(&a, "--no-timing"), 1);
   run(&b, 0);
   ck_assert_int_ge(attempts(&a), 2);
   ck_assert_int_ge(job_stage(&a, "condensed stiffness", NULL), 2);
   same_answer(&a, &b, 1e-5);
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
 /* Interrupted before and after the second pass and gone on with: the same
  * files, byte by byte. */
 static void check_going_on(const char *friction, int interruptions) {
   static const char *const nothing[] = {NULL, NULL};
   static const char *const again[] = {"--restart", NULL};
-  job a = cantilever(friction, "");
+  JOB a = cantilever(friction, "");
   traced count = {.action = TRACE_SIGNAL};
   ck_assert_int_eq(traced_run(&a, nothing, &count), 0);
   for (int part = 9 - 2 * (interruptions - 1); part < 10; part += 2) {
-    job b = cantilever(friction, "");
+    JOB b = cantilever(friction, "");
     traced t = {.action = TRACE_SIGNAL,
                 .at = count.changes * part / 10,
                 .number = SIGINT};
     int code = traced_run(&b, nothing, &t);
     if (code != 130) {
-      job_end(&b);
       continue;
     }
     ck_assert_int_eq(traced_run(&b, again, NULL), 0);
     const char *file = traced_difference(&a, &b);
     ck_assert_msg(file == NULL, "part %d: .%s differs", part, file);
-    job_end(&b);
   }
-  job_end(&a);
 }
 
-START_TEST(run_goes_on_bit_for_bit) { check_going_on("", 3); }
-END_TEST
+TEST(run_goes_on_bit_for_bit) { check_going_on("", 3); }
 
-START_TEST(rough_run_goes_on_bit_for_bit) { check_going_on(rough, 1); }
-END_TEST
+TEST(rough_run_goes_on_bit_for_bit) { check_going_on(rough, 1); }
 
-UNIT_MAIN("reach", long_surface_costs_its_nodes_within_reach,
-          nodes_within_reach_are_those_of_any_thickness,
-          rough_surface_costs_its_nodes_within_reach,
-          nodes_that_reach_are_taken_in_a_second_pass,
-          rough_nodes_that_reach_are_taken_too,
-          stiffness_is_chosen_again_for_more_nodes, other_laws_keep_all_nodes,
-          other_effects_keep_all_nodes, increments_are_cut_with_all_nodes,
-          run_goes_on_bit_for_bit, rough_run_goes_on_bit_for_bit)
+UNIT_MAIN("reach")

@@ -5,7 +5,6 @@
  * integrals of polynomials, below. Hertz's half plane, whose stresses the
  * example has in closed form: the estimate beside the true error.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -14,9 +13,8 @@ typedef struct scene {
 } scene;
 
 static job run_scene(const scene *s, const char *factor) {
-  char path[80];
   job j = job_begin("truth");
-  snprintf(path, sizeof path, "tests/regression/mesh/%s", s->geo);
+  PRINTED(path, "tests/regression/mesh/%s", s->geo);
   job_copy(&j, path);
   job_write(&j, "truth.inp",
             "*PARAMETER\nF = %s\nN = 3 + 0*<F>\n*MESH, FILE=%s\n"
@@ -27,8 +25,7 @@ static job run_scene(const scene *s, const char *factor) {
             "*REFERENCE\n%s*STEP\n*STATIC\n*BOUNDARY\n%s"
             "*DSLOAD\nTOP, P, 10.\n*ACCURACY, MESH=YES\n*END STEP\n",
             factor, s->geo, s->nu, s->section, s->reference, s->supports);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
@@ -69,20 +66,17 @@ static double listed(const job *j, const char *norm) {
   return value;
 }
 
-START_TEST(uniform_stress_has_the_error_of_its_factor) {
+TEST(uniform_stress_has_the_error_of_its_factor) {
   for (size_t k = 0; k < sizeof uniform / sizeof *uniform; ++k) {
-    job exact = run_scene(&uniform[k], "1"),
+    JOB exact = run_scene(&uniform[k], "1"),
         other = run_scene(&uniform[k], "1.25");
     for (int i = 0; i < 4; ++i) {
       ck_assert_double_le(0.01 * job_told(&exact, norms[i]), 1e-9);
       ck_assert_double_eq_tol(0.01 * job_told(&other, norms[i]), 0.2, 1e-9);
       ck_assert_double_eq_tol(listed(&other, listed_norms[i]), 20, 1e-6);
     }
-    job_end(&exact);
-    job_end(&other);
   }
 }
-END_TEST
 
 /*
  * u_y = -0.01 y (in 3-D u_z = -0.01 z) is found; 0.001 y^2 more is the closed
@@ -96,7 +90,7 @@ static void check_quadratic(const char *geo, const char *reference,
   const char *supports = geo[0] == 's' ? "LEFT, 1\n" : "LEFT, 1\nFRONT, 2\n";
   const scene s = {geo, "", "0", reference, supports};
   const double a = 0.01, b = 0.001;
-  job j = run_scene(&s, "1");
+  JOB j = run_scene(&s, "1");
   double energy = sqrt(4 * b * b / 3 / (a * a - 2 * a * b + 4 * b * b / 3));
   ck_assert_double_eq_tol(0.01 * job_told(&j, norms[0]), energy, 1e-9);
   if (displacement > 0)
@@ -110,10 +104,9 @@ static void check_quadratic(const char *geo, const char *reference,
   else
     ck_assert(isnan(0.01 * job_told(&j, norms[2])));
   ck_assert(isnan(0.01 * job_told(&j, norms[3])));
-  job_end(&j);
 }
 
-START_TEST(integrals_of_a_quadratic_field) {
+TEST(integrals_of_a_quadratic_field) {
   check_quadratic("square.geo", "u_x, 0\nu_y, \"-0.01*y + 0.001*y^2\"\n", 1, 0);
   check_quadratic("square.geo",
                   "stress_xx, 0\nstress_yy, \"-10 + 2*y\"\nstress_zz, 0\n"
@@ -126,7 +119,6 @@ START_TEST(integrals_of_a_quadratic_field) {
                   "stress_xy, 0\nstress_yz, 0\nstress_zx, 0\n",
                   0, 1);
 }
-END_TEST
 
 /* Strains of all components, each with a rotation, given at all nodes: the
  * closed form F times as large. */
@@ -154,7 +146,7 @@ static const struct {
 
 static void check_sheared(int id, int stress, const char *factor,
                           double error) {
-  job j = job_begin("truth");
+  JOB j = job_begin("truth");
   char path[80], type[20] = "", cards[400], *rest;
   snprintf(path, sizeof path, "tests/regression/mesh/%s", sheared[id].geo);
   job_copy(&j, path);
@@ -172,45 +164,38 @@ static void check_sheared(int id, int stress, const char *factor,
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   ck_assert_double_eq_tol(0.01 * job_told(&j, norms[0]), error, 1e-8);
   ck_assert_double_eq_tol(0.01 * job_told(&j, norms[1 + stress]), error, 1e-8);
-  job_end(&j);
 }
 
-START_TEST(all_strains_have_the_error_of_their_factor) {
+TEST(all_strains_have_the_error_of_their_factor) {
   for (int k = 0; k < 6; ++k) {
     check_sheared(k / 2, k % 2, "1", 0.0);
     check_sheared(k / 2, k % 2, "1.25", 0.2);
   }
 }
-END_TEST
 
 /* Both layers are stretched to the stress 1; the closed form says 2 of the
  * upper one, which is three times as thick, and as much of its displacement. */
-START_TEST(thick_parts_count_more) {
-  job j = job_begin("truth");
-  job_copy(&j, "tests/regression/mesh/layers.geo");
-  job_write(&j, "truth.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.\n"
-            "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
-            "*SOLID SECTION, ELSET=HARD, MATERIAL=M, THICKNESS=3.\n"
-            "*REFERENCE\nu_x, \"1E-3*x*(1 + (y>0.5))\"\nu_y, 0\n"
-            "stress_xx, \"1 + (y>0.5)\"\nstress_yy, 0\nstress_zz, 0\n"
-            "stress_xy, 0\n*STEP\n*STATIC\n*BOUNDARY\nSOFT, 1, 1, \"1E-3*x\"\n"
-            "HARD, 1, 1, \"1E-3*x\"\nSOFT, 2\nHARD, 2\n*END STEP\n");
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+TEST(thick_parts_count_more) {
+  JOB j = job_with(
+      "truth", "tests/regression/mesh/layers.geo",
+      "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n"
+      "*ELASTIC\n1000., 0.\n"
+      "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
+      "*SOLID SECTION, ELSET=HARD, MATERIAL=M, THICKNESS=3.\n"
+      "*REFERENCE\nu_x, \"1E-3*x*(1 + (y>0.5))\"\nu_y, 0\n"
+      "stress_xx, \"1 + (y>0.5)\"\nstress_yy, 0\nstress_zz, 0\n"
+      "stress_xy, 0\n*STEP\n*STATIC\n*BOUNDARY\nSOFT, 1, 1, \"1E-3*x\"\n"
+      "HARD, 1, 1, \"1E-3*x\"\nSOFT, 2\nHARD, 2\n*END STEP\n");
+  CK_EXIT(job_run(&j, ""), 0, j);
   for (int i = 0; i < 3; ++i)
     ck_assert_double_eq_tol(0.01 * job_told(&j, norms[i]), sqrt(3 / 13.), 1e-9);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(estimate_beside_the_true_error_of_hertz) {
+TEST(estimate_beside_the_true_error_of_hertz) {
   double before = 1;
   for (int n = 4; n <= 8; n *= 2) {
-    char words[40];
-    job j = job_begin("hertz");
-    snprintf(words, sizeof words, "-D N=%d", n);
+    JOB j = job_begin("hertz");
+    PRINTED(words, "-D N=%d", n);
     ck_assert_int_eq(job_run_deck(&j, "input/hertz_line/hertz_exact", words),
                      0);
     double effectivity = 100 * 0.01 * job_told(&j, "effectivity");
@@ -220,21 +205,18 @@ START_TEST(estimate_beside_the_true_error_of_hertz) {
     ck_assert_msg(effectivity > 0.9 && effectivity < 1.1, "%g", effectivity);
     ck_assert_double_lt(error, 0.6 * before);
     before = error;
-    char *lst = job_file(&j, "lst");
+    FREED char *lst = job_file(&j, "lst");
     ck_assert_ptr_nonnull(strstr(lst, "  true error: energy norm "));
     ck_assert_ptr_nonnull(strstr(lst, "  estimated over true error: "));
-    free(lst);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Tube under pressure, radii 1 and 2, nu = 0.4999 (Lame), 8 segments through
  * its wall: clusters of elements see the mean of their change of volume, and so
  * does the error. */
-START_TEST(averaged_strains_have_the_error_of_the_law) {
+TEST(averaged_strains_have_the_error_of_the_law) {
   const double E = 1e5, nu = 0.4999, p = 100, k = (1 + nu) / E * p / 3;
-  job j = job_begin("tube");
+  JOB j = job_begin("tube");
   job_write(
       &j, "tube.geo",
       "Point(1) = {1, 0, 0}; Point(2) = {2, 0, 0}; Point(3) = {0, 2, 0};\n"
@@ -252,13 +234,10 @@ START_TEST(averaged_strains_have_the_error_of_the_law) {
             "*BOUNDARY\nBELOW, 2\nLEFT, 1\n*DSLOAD\nHOLE, P, %g\n"
             "*ACCURACY, MESH=YES\n*END STEP\n",
             E, nu, k * (1 - 2 * nu), 4 * k, k * (1 - 2 * nu), 4 * k, p);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   const double ratio = job_told(&j, "effectivity");
   ck_assert_msg(ratio > 0.9 && ratio < 1.1, "%g", ratio);
-  job_end(&j);
 }
-END_TEST
 
 /* The same tube turned round its axis: the hoop strain, that of the centroid in
  * the stress of an element, is taken where it is, its change of volume as the
@@ -272,7 +251,7 @@ static const struct {
                {0.4999, ", FORMULATION=AVERAGED", 0},
                {0.4999, ", FORMULATION=AVERAGED", 1}};
 
-START_TEST(errors_of_a_turned_tube) {
+TESTS(errors_of_a_turned_tube, 4) {
   const double E = 1e5, nu = turned[_i].nu, p = 100, k = (1 + nu) / E * p / 3;
   char exact[400];
   if (turned[_i].by_stress)
@@ -283,7 +262,7 @@ START_TEST(errors_of_a_turned_tube) {
   else
     snprintf(exact, sizeof exact, "u_r, \"%.17g*r + %.17g/r\"\nu_z, 0\n",
              k * (1 - 2 * nu), 4 * k);
-  job j = job_begin("tube");
+  JOB j = job_begin("tube");
   job_write(
       &j, "tube.geo",
       "Point(1) = {1, 0, 0}; Point(2) = {2, 0, 0};\n"
@@ -302,34 +281,17 @@ START_TEST(errors_of_a_turned_tube) {
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   const double ratio = job_told(&j, "effectivity");
   ck_assert_msg(ratio > 0.95 && ratio < 1.05, "%g", ratio);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(value_that_is_not_finite_is_an_error) {
-  job j = job_begin("truth");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "truth.inp",
-            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*REFERENCE\n"
-            "u_x, \"log(x - 0.5)\"\nu_y, 0\n*STEP\n*STATIC\n*BOUNDARY\n"
-            "BOTTOM, 1, 2\n*DSLOAD\nTOP, P, 1.\n*END STEP\n");
+TEST(value_that_is_not_finite_is_an_error) {
+  JOB j =
+      job_with("truth", "tests/regression/mesh/square.geo",
+               "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n"
+               "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*REFERENCE\n"
+               "u_x, \"log(x - 0.5)\"\nu_y, 0\n*STEP\n*STATIC\n*BOUNDARY\n"
+               "BOTTOM, 1, 2\n*DSLOAD\nTOP, P, 1.\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "*REFERENCE: a value is not finite"));
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("reference");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_test(tests, uniform_stress_has_the_error_of_its_factor);
-  tcase_add_test(tests, integrals_of_a_quadratic_field);
-  tcase_add_test(tests, all_strains_have_the_error_of_their_factor);
-  tcase_add_test(tests, thick_parts_count_more);
-  tcase_add_test(tests, estimate_beside_the_true_error_of_hertz);
-  tcase_add_test(tests, averaged_strains_have_the_error_of_the_law);
-  tcase_add_loop_test(tests, errors_of_a_turned_tube, 0, 4);
-  tcase_add_test(tests, value_that_is_not_finite_is_an_error);
-  return unit_run("reference", tests);
-}
+UNIT_MAIN("reference")

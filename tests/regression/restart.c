@@ -3,7 +3,6 @@
  * that was not: all files equal, byte by byte. The points of interruption are
  * counted in writes (the run is traced), so that nothing depends on time.
  */
-#include "base/base.h"
 #include "support/folder.h"
 #include "support/small_job.h"
 #include "support/traced.h"
@@ -72,9 +71,8 @@ static void write_field(const job *j, const char *file, int degrees) {
 }
 
 static int same_bytes(const job *a, const job *b, const char *suffix) {
-  char line[400];
-  snprintf(line, sizeof line, "cmp -s '%s/%s.%s' '%s/%s.%s'", a->dir, a->name,
-           suffix, b->dir, b->name, suffix);
+  PRINTED(line, "cmp -s '%s/%s.%s' '%s/%s.%s'", a->dir, a->name, suffix, b->dir,
+          b->name, suffix);
   return system(line) == 0;
 }
 
@@ -88,8 +86,8 @@ static job stopped_at(int tenths) {
   return j;
 }
 
-START_TEST(changed_decks_are_refused_by_card) {
-  job j = stopped_at(4);
+TEST(changed_decks_are_refused_by_card) {
+  JOB j = stopped_at(4);
   edit(&j, "130.D3", "131.D3");
   refused(&j, 2, "changed: *ELASTIC, TYPE=ISO has other data; only");
   edit(&j, "131.D3", "130.D3");
@@ -114,14 +112,12 @@ START_TEST(changed_decks_are_refused_by_card) {
   ck_assert_ptr_nonnull(strstr(j.errors, "--no-timing"));
   edit(&j, "TOP, 1, 1, -0.01", "TOP, 1, 1, -0.015"); /* of a later step */
   goes_on(&j, 0, "later load");
-  job_end(&j);
 }
-END_TEST
 
 /* Output and solver of a step to come, requests for restart files anywhere; of
  * the step in progress they may not change, nor may effects come or go. */
-START_TEST(later_steps_may_change) {
-  job j = stopped_at(3);
+TEST(later_steps_may_change) {
+  JOB j = stopped_at(3);
   edit(&j, "*PRINT, CONTACT, LOOP", "*PRINT, CONTACT");
   refused(&j, 2, "step 1, *PRINT");
   edit(&j, "*PRINT, CONTACT", "*PRINT, CONTACT, LOOP");
@@ -140,13 +136,11 @@ START_TEST(later_steps_may_change) {
   ck_assert_ptr_nonnull(strstr(again, "METHOD=SOR"));
   free(lst);
   ck_assert(job_has(&j, "rst.h5"));
-  job_end(&j);
 }
-END_TEST
 
 /* Adapted increments come back to lengths of before but for the rounding of the
  * times; a run that goes on takes them for the same ones too. */
-START_TEST(adapted_increments_go_on) {
+TEST(adapted_increments_go_on) {
   int changes, all;
   const char *words = "INTEGRATOR=MIDPOINT, TOLERANCE=1E-4";
   job both[2];
@@ -162,7 +156,6 @@ START_TEST(adapted_increments_go_on) {
   same_files(&both[0], &both[1], words);
   for (int k = 0; k < 2; ++k) job_end(&both[k]);
 }
-END_TEST
 
 /* Yields within an increment, whose stages are then not stable. */
 static job yielding(void) {
@@ -173,26 +166,22 @@ static job yielding(void) {
 }
 
 /* Stopped after the first attempt that was not stable: the next is cut. */
-START_TEST(unstable_attempt_is_not_made_twice) {
+TEST(unstable_attempt_is_not_made_twice) {
   int from = 0, to, changes;
-  job whole = yielding(), j = yielding();
+  JOB whole = yielding(), j = yielding();
   ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &to), 0);
   while (to - from > 1) {
     const int at = (from + to) / 2;
     job_clear(&j);
     ck_assert_int_eq(run_until(&j, nothing, at, SIGINT, &changes), 130);
-    char *sta = job_file(&j, "sta");
+    FREED char *sta = job_file(&j, "sta");
     *(strstr(sta, "CUT UNSTABLE") != NULL ? &to : &from) = at;
-    free(sta);
   }
   job_clear(&j);
   ck_assert_int_eq(run_until(&j, nothing, to, SIGINT, &changes), 130);
   goes_on(&j, 0, "yielding");
   same_files(&whole, &j, "yielding");
-  job_end(&whole);
-  job_end(&j);
 }
-END_TEST
 
 static job adapted_factors(void) {
   job j = small_creep(0.1, "*SOLVER, STIFFNESS=FACTOR\n",
@@ -204,21 +193,18 @@ static job adapted_factors(void) {
 }
 
 /* So do the rows that the factors of their matrices follow. */
-START_TEST(factors_of_adapted_increments_go_on) {
+TEST(factors_of_adapted_increments_go_on) {
   int changes, all;
-  job one = adapted_factors();
+  JOB one = adapted_factors();
   ck_assert_int_eq(run_until(&one, nothing, 0, 0, &all), 0);
   for (int k = 1; k <= 3; ++k) {
-    job j = adapted_factors();
+    JOB j = adapted_factors();
     ck_assert_int_eq(run_until(&j, nothing, all * k / 8, SIGINT, &changes),
                      130);
     goes_on(&j, 0, "adapted");
     same_files(&one, &j, "adapted");
-    job_end(&j);
   }
-  job_end(&one);
 }
-END_TEST
 
 /* A block that comes down through the air, with tolerances of its own. */
 static job falling(void) {
@@ -229,24 +215,21 @@ static job falling(void) {
 }
 
 /* The path beside the run goes on with the tolerance that was chosen last. */
-START_TEST(chosen_tolerance_goes_on) {
+TEST(chosen_tolerance_goes_on) {
   int changes, all;
-  job whole = falling();
+  JOB whole = falling();
   ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
   for (int k = 1; k < 4; ++k) {
-    job j = falling();
+    JOB j = falling();
     ck_assert_int_eq(run_until(&j, nothing, all * k / 5, SIGINT, &changes),
                      130);
     goes_on(&j, 0, "falling");
     same_files(&whole, &j, "falling");
-    job_end(&j);
   }
-  job_end(&whole);
 }
-END_TEST
 
 /* The path beside the run goes on with the motion of the obstacle there. */
-START_TEST(path_on_a_moving_obstacle_goes_on) {
+TEST(path_on_a_moving_obstacle_goes_on) {
   int changes, all;
   job both[2];
   for (int k = 0; k < 2; ++k) {
@@ -261,19 +244,17 @@ START_TEST(path_on_a_moving_obstacle_goes_on) {
   same_files(&both[0], &both[1], "moving");
   for (int k = 0; k < 2; ++k) job_end(&both[k]);
 }
-END_TEST
 
 /* Steps that creep, and one between without an estimate in time: the errors of
  * the others add up; the loads of the second and of the third. */
 static job stepwise(double mu, const char *const *load) {
-  char steps[300];
   job j = small_creep(mu, "", "INTEGRATOR=EULER");
-  snprintf(steps, sizeof steps,
-           "*ACCURACY, TIME=YES\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
-           "0.5, 1.\n*DSLOAD\nTOP, P, %s\n*END STEP\n*STEP\n*STATIC\n1.\n%s"
-           "*ACCURACY, TIME=NO\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
-           "0.5, 1.\n*ACCURACY, TIME=YES\n",
-           load[0], load[1]);
+  PRINTED(steps,
+          "*ACCURACY, TIME=YES\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
+          "0.5, 1.\n*DSLOAD\nTOP, P, %s\n*END STEP\n*STEP\n*STATIC\n1.\n%s"
+          "*ACCURACY, TIME=NO\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
+          "0.5, 1.\n*ACCURACY, TIME=YES\n",
+          load[0], load[1]);
   edit(&j, "*ACCURACY, TIME=YES\n", steps);
   edit(&j, "0.5, 4.", "0.5, 1.");
   edit(&j, "MAXWELL\n4.\n", "NORTON\n1E-10, 3.\n");
@@ -283,7 +264,7 @@ static job stepwise(double mu, const char *const *load) {
 
 /* Those of stresses; of strains that stay without stress; none where the loads
  * turn too often. */
-START_TEST(paths_of_steps_go_on) {
+TEST(paths_of_steps_go_on) {
   static const char *const loads[][2] = {
       {"80.", ""},
       {"\"10*t^3\"", "*DSLOAD\nTOP, P, 0.\nLEFT, P, 0.\n"},
@@ -291,26 +272,23 @@ START_TEST(paths_of_steps_go_on) {
   static const int stops[][3] = {{20, 25, 28}, {18, 20}, {20}};
   for (int i = 0; i < 3; ++i) {
     int changes, all;
-    job whole = stepwise(i == 1 ? 0.0 : 0.1, loads[i]);
+    JOB whole = stepwise(i == 1 ? 0.0 : 0.1, loads[i]);
     ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
     ck_assert_int_eq(isnan(job_told(&whole, "time_error_percent")), i == 2);
     for (int k = 0; k < 3 && stops[i][k] > 0; ++k) {
-      job j = stepwise(i == 1 ? 0.0 : 0.1, loads[i]);
+      JOB j = stepwise(i == 1 ? 0.0 : 0.1, loads[i]);
       ck_assert_int_eq(
           run_until(&j, nothing, all * stops[i][k] / 36, SIGINT, &changes),
           130);
       goes_on(&j, 0, loads[i][0]);
       same_files(&whole, &j, "steps");
-      job_end(&j);
     }
-    job_end(&whole);
   }
 }
-END_TEST
 
 /* What friction remembers of errors, of which a goal that wears has none, the
  * solutions that CHECK= finds, and what is worn off. */
-START_TEST(errors_of_goals_go_on) {
+TEST(errors_of_goals_go_on) {
   static const char *const cards[] = {
       "*GOAL, NAME=F, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
       "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n*STEP",
@@ -331,17 +309,15 @@ START_TEST(errors_of_goals_go_on) {
     for (int k = 0; k < 2; ++k) job_end(&both[k]);
   }
 }
-END_TEST
 
 /* A stiffness that is an operator: its factors are made again. */
-START_TEST(factor_goes_on) {
+TEST(factor_goes_on) {
   static const char *const methods[] = {"AUTO", "AUGLAG", "PROXIMAL", "PCG",
                                         "LAGRANGE"};
   for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
-    char choice[60];
     int changes, all;
     job both[2];
-    snprintf(choice, sizeof choice, "%s, STIFFNESS=FACTOR", methods[m]);
+    PRINTED(choice, "%s, STIFFNESS=FACTOR", methods[m]);
     for (int k = 0; k < 2; ++k) both[k] = small_flat(0.4, "", choice);
     ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
     ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
@@ -351,7 +327,6 @@ START_TEST(factor_goes_on) {
     for (int k = 0; k < 2; ++k) job_end(&both[k]);
   }
 }
-END_TEST
 
 /* A strip of so many cells in three steps, their *SOLVER cards and supports;
  * its law and what integrates it, or "". */
@@ -395,32 +370,29 @@ static void check_kinds(int cells, const char *const solver[2],
   ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
   ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
                    130);
-  char *listing = job_file(&both[0], "lst");
+  FREED char *listing = job_file(&both[0], "lst");
   const char *first = strstr(listing, chosen[0]);
   ck_assert_ptr_nonnull(first);
   ck_assert_ptr_nonnull(strstr(first, chosen[1]));
-  free(listing);
-  char *status_file = job_file(&both[1], "sta");
+  FREED char *status_file = job_file(&both[1], "sta");
   ck_assert_ptr_nonnull(strstr(status_file, "\n     2     1 "));
   ck_assert_ptr_null(strstr(status_file, "\n     3     1 "));
-  free(status_file);
   goes_on(&both[1], 0, "strip");
   same_files(&both[0], &both[1], "strip");
   for (int k = 0; k < 2; ++k) job_end(&both[k]);
 }
 
 /* The kind of stiffness is that of the step, not of the one before it. */
-START_TEST(kind_of_stiffness_goes_on) {
+TEST(kind_of_stiffness_goes_on) {
   check_kinds(
       300, (const char *const[]){", STIFFNESS=DENSE", ""},
       (const char *const[]){"", ""},
       (const char *const[]){"DENSE  STIFFNESS of", "FACTOR  it is expected"});
 }
-END_TEST
 
 /* Tangents of the points that are those of the last solve, as nothing flows:
  * the factor of Newton, which the next contact changes in a few rows, too. */
-START_TEST(factor_of_tangents_goes_on) {
+TEST(factor_of_tangents_goes_on) {
   int changes, all;
   job both[2];
   static const char *const none[] = {"", ""};
@@ -434,56 +406,49 @@ START_TEST(factor_of_tangents_goes_on) {
   same_files(&both[0], &both[1], "tangents");
   for (int k = 0; k < 2; ++k) job_end(&both[k]);
 }
-END_TEST
 
 /* Other supports: a new choice, by the systems and solves so far, without which
  * it would be DENSE. */
-START_TEST(observed_work_goes_on) {
+TEST(observed_work_goes_on) {
   check_kinds(150, (const char *const[]){", STIFFNESS=FACTOR", ""},
               (const char *const[]){"END, 1, 1, 4e-5\n", "END, 2, 2, -5e-5\n"},
               (const char *const[]){"FACTOR  STIFFNESS of",
                                     "FACTOR  it is expected to be faster, by"});
 }
-END_TEST
 
 /* A load that grows from next to nothing and falls again, far below what moves
  * the block to the floor: rounding counts against the largest load of the step,
  * and energies and stresses against the largest so far. */
 static job light(void) {
-  job j = job_begin("light");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "light.inp",
-            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
-            "0.1, 1.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 3E-10\n"
-            "*PRINT, TOTALS\n*OUTPUT\n*END STEP\n*STEP\n*QUASISTATIC\n"
-            "0.2, 1.\n*DSLOAD\nTOP, P, \"3E-10*(2.01 - t)\"\n*END STEP\n");
+  job j =
+      job_with("light", "tests/regression/mesh/square.geo",
+               "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
+               "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+               "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+               "0.1, 1.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 3E-10\n"
+               "*PRINT, TOTALS\n*OUTPUT\n*END STEP\n*STEP\n*QUASISTATIC\n"
+               "0.2, 1.\n*DSLOAD\nTOP, P, \"3E-10*(2.01 - t)\"\n*END STEP\n");
   return j;
 }
 
-START_TEST(largest_loads_and_energies_go_on) {
+TEST(largest_loads_and_energies_go_on) {
   static const int stops[] = {6, 8, 10, 12, 45};
   int changes, all;
-  job whole = light();
+  JOB whole = light();
   int code = run_until(&whole, nothing, 0, 0, &all);
   ck_assert_int_le(code, 1); /* the first forces are told to be in doubt     */
-  char *lst = job_file(&whole, "lst");
+  FREED char *lst = job_file(&whole, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "\n  rounding: "));
-  free(lst);
   for (int k = 0; k < 5; ++k) {
-    job j = light();
+    JOB j = light();
     ck_assert_int_eq(
         run_until(&j, nothing, all * stops[k] / 60, SIGINT, &changes), 130);
     goes_on(&j, code, "light");
     same_files(&whole, &j, "light");
-    job_end(&j);
   }
-  job_end(&whole);
 }
-END_TEST
 
 /* A block that slips on, with another material and another second step. */
 static job sliding(const char *material, const char *second) {
@@ -498,7 +463,7 @@ static job sliding(const char *material, const char *second) {
 
 /* The rate of contraction that is known for the statuses belongs to a matrix:
  * moduli that change, tangents that stay. */
-START_TEST(known_rate_goes_on) {
+TEST(known_rate_goes_on) {
   static const char *const body[][2] = {
       {"130.D3, 0.2, 0.\n65.D3, 0.3, 500.\n*EXPANSION\n1.2E-7\n"
        "*INELASTIC, LAW=MAXWELL\n4.\n",
@@ -508,44 +473,38 @@ START_TEST(known_rate_goes_on) {
        "*END STEP\n*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"}};
   for (int i = 0; i < 2; ++i) {
     int changes, all;
-    job whole = sliding(body[i][0], body[i][1]);
+    JOB whole = sliding(body[i][0], body[i][1]);
     ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
     for (int k = 6; k < 8; ++k) {
-      job j = sliding(body[i][0], body[i][1]);
+      JOB j = sliding(body[i][0], body[i][1]);
       ck_assert_int_eq(run_until(&j, nothing, all * k / 10, SIGINT, &changes),
                        130);
       goes_on(&j, 0, body[i][1]);
       same_files(&whole, &j, body[i][1]);
-      job_end(&j);
     }
-    job_end(&whole);
   }
 }
-END_TEST
 
 /* Killed, gone on with and killed again: what the second restart file tells of
  * increments was read from the first. */
-START_TEST(killed_twice_goes_on) {
+TEST(killed_twice_goes_on) {
   int all, changes;
   const char *words = "INTEGRATOR=MIDPOINT";
   const char *const again[] = {"--restart", NULL};
-  job whole = small_creep(1.0, "*RESTART\n", words);
-  job j = small_creep(1.0, "*RESTART\n", words);
+  JOB whole = small_creep(1.0, "*RESTART\n", words);
+  JOB j = small_creep(1.0, "*RESTART\n", words);
   ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
   run_until(&j, nothing, 12 * all / 25, SIGKILL, &changes);
   run_until(&j, again, 3 * all / 8, SIGKILL, &changes);
   goes_on(&j, 0, words);
   same_files(&whole, &j, words);
-  job_end(&whole);
-  job_end(&j);
 }
-END_TEST
 
 /* Stopped before any increment. */
-START_TEST(run_without_a_file_begins_anew) {
+TEST(run_without_a_file_begins_anew) {
   int changes;
-  job whole = small_flat(0.4, "*RESTART\n", "AUTO");
-  job j = small_flat(0.4, "*RESTART\n", "AUTO");
+  JOB whole = small_flat(0.4, "*RESTART\n", "AUTO");
+  JOB j = small_flat(0.4, "*RESTART\n", "AUTO");
   ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &changes), 0);
   ck_assert_int_eq(run_until(&j, nothing, 9, SIGTERM, &changes), 143);
   ck_assert(!job_has(&j, "rst.h5"));
@@ -553,23 +512,20 @@ START_TEST(run_without_a_file_begins_anew) {
   ck_assert_ptr_nonnull(
       strstr(j.errors, "block.rst.h5; the run begins at its start"));
   same_files(&whole, &j, "from nothing");
-  job_end(&whole);
-  job_end(&j);
 }
-END_TEST
 
 /* Files under the names of before: temperatures of the step in progress, and of
  * one to come; the mesh, of a file that gmsh finds. */
-START_TEST(files_are_in_the_seal) {
+TEST(files_are_in_the_seal) {
   static const char *const names[] = {"first.msh", "second.msh"};
   int changes, all;
-  job j = small_flat(0.4, "*TEMPERATURE, FILE=first.msh\nBODY\n", "AUTO");
+  JOB j = small_flat(0.4, "*TEMPERATURE, FILE=first.msh\nBODY\n", "AUTO");
   edit(&j, "130.D3, 0.2", "130.D3, 0.2\n*EXPANSION\n1.E-5");
   edit(&j, "*BOUNDARY\nTOP, 1, 1, -0.01",
        "*TEMPERATURE, FILE=second.msh\nBODY\n*BOUNDARY\nTOP, 1, 1, -0.01");
   edit(&j, "FILE=greco.geo", "FILE=outer.geo");
   job_write(&j, "outer.geo", "Merge StrCat(\"greco\", \".geo\");\n");
-  char *block = file_read("input/greco/greco.geo", NULL);
+  FREED char *block = file_read("input/greco/greco.geo", NULL);
   for (int k = 0; k < 2; ++k) write_field(&j, names[k], 20);
   ck_assert_int_eq(run_until(&j, nothing, 0, 0, &all), 0);
   ck_assert_int_eq(run_until(&j, nothing, all * 3 / 10, SIGINT, &changes), 130);
@@ -580,56 +536,46 @@ START_TEST(files_are_in_the_seal) {
             block);
   refused(&j, 4, "with another mesh");
   job_write(&j, "greco.geo", "%s", block);
-  free(block);
   write_field(&j, names[1], 21);
   goes_on(&j, 0, "a file of a later step");
-  job_end(&j);
 }
-END_TEST
 
 /* Equal runs write equal restart files. */
-START_TEST(restart_files_are_equal) {
-  job a = small_creep(1.0, "*RESTART\n", "INTEGRATOR=MIDPOINT");
-  job b = small_creep(1.0, "*RESTART\n", "INTEGRATOR=MIDPOINT");
+TEST(restart_files_are_equal) {
+  JOB a = small_creep(1.0, "*RESTART\n", "INTEGRATOR=MIDPOINT");
+  JOB b = small_creep(1.0, "*RESTART\n", "INTEGRATOR=MIDPOINT");
   ck_assert_int_eq(job_run(&a, "--no-timing"), 0);
   ck_assert_int_eq(job_run(&b, "--no-timing"), 0);
   ck_assert_msg(same_bytes(&a, &b, "rst.h5"), "rst.h5");
   ck_assert_msg(same_bytes(&a, &b, "rst.old.h5"), "rst.old.h5");
   ck_assert_msg(same_bytes(&a, &b, "rst.inc"), "rst.inc");
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
 /* Bytes of a result. */
 static long bytes_of(const job *j, const char *suffix) {
-  char path[200];
   struct stat of;
-  snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffix);
+  PRINTED(path, "%s/%s.%s", j->dir, j->name, suffix);
   ck_assert_msg(stat(path, &of) == 0, "%s", path);
   return (long)of.st_size;
 }
 
 /* What is written at each increment does not grow with their number. */
-START_TEST(restart_file_does_not_grow) {
+TEST(restart_file_does_not_grow) {
   long whole[2], added[2];
   for (int k = 0; k < 2; ++k) {
-    job j = small_flat(0.4, "*RESTART\n", "SOR");
+    JOB j = small_flat(0.4, "*RESTART\n", "SOR");
     if (k == 1) edit(&j, "0.25, 1.", "0.01, 1.");
     ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
     whole[k] = bytes_of(&j, "rst.h5");
     added[k] = bytes_of(&j, "rst.inc");
-    job_end(&j);
   }
   ck_assert_int_eq(whole[1], whole[0]);
   ck_assert_int_gt(added[1], 4 * added[0]);
 }
-END_TEST
 
 /* The restart file as it is now; another may take its name. */
 static hid_t kept_by(const job *j) {
-  char path[200];
-  snprintf(path, sizeof path, "%s/%s.rst.h5", j->dir, j->name);
+  PRINTED(path, "%s/%s.rst.h5", j->dir, j->name);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   ck_assert_msg(file >= 0, "%s", path);
   return file;
@@ -651,7 +597,7 @@ static unsigned char *array_of(hid_t file, const char *name, size_t *bytes) {
 /* Every array is there twice, but for calls of stages. */
 static void same_arrays(hid_t a, hid_t b, int scene) {
   size_t n, m;
-  char *list = (char *)array_of(a, "/list", &n);
+  FREED char *list = (char *)array_of(a, "/list", &n);
   int found = 0;
   for (char *line = list; *line != '\0'; line = strchr(line, '\n') + 1) {
     char name[240];
@@ -659,20 +605,17 @@ static void same_arrays(hid_t a, hid_t b, int scene) {
     if (strcmp(name, "run/costs") == 0) continue;
     memmove(name + 6, name, strlen(name) + 1);
     memcpy(name, "/data/", 6);
-    unsigned char *x = array_of(a, name, &n), *y = array_of(b, name, &m);
+    FREED unsigned char *x = array_of(a, name, &n), *y = array_of(b, name, &m);
     ck_assert_msg(x != NULL && y != NULL && n == m && memcmp(x, y, n) == 0,
                   "scene %d: %s", scene, name);
-    free(x);
-    free(y);
     ++found;
   }
   ck_assert_int_gt(found, 10);
-  free(list);
 }
 
 /* Stopped, gone on with and stopped again before its next increment: what was
  * read is what is written. */
-START_TEST(what_is_read_is_written_again) {
+TEST(what_is_read_is_written_again) {
   static const char *const again[] = {"--restart", NULL};
   static const char changed[] = "130.D3, 0.2\n*EXPANSION\n1.2E-7\n";
   static const char second[] =
@@ -681,7 +624,7 @@ START_TEST(what_is_read_is_written_again) {
   int all = 0, changes;
   for (int scene = 0; scene < 4; ++scene)
     for (int k = 0; k < 3; ++k) {
-      job j = scene == 0   ? small_flat(0.4, "", "AUTO")
+      JOB j = scene == 0   ? small_flat(0.4, "", "AUTO")
               : scene == 1 ? small_creep(1.0, "", "INTEGRATOR=MIDPOINT")
               : scene == 2 ? light()
                            : sliding(changed, second);
@@ -697,15 +640,13 @@ START_TEST(what_is_read_is_written_again) {
         H5Fclose(first);
         H5Fclose(then);
       }
-      job_end(&j);
     }
 }
-END_TEST
 
 /* The last increment but not the first has converged; at the end of such a run
  * there is nothing left to do. */
-START_TEST(missed_tolerance_goes_on) {
-  job j = small_flat(1.0, "*RESTART\n", "SOR, MAX_ITER=1");
+TEST(missed_tolerance_goes_on) {
+  JOB j = small_flat(1.0, "*RESTART\n", "SOR, MAX_ITER=1");
   edit(&j, "0.25, 1.\n*BOUNDARY\nTOP, 2, 2, -0.02\nTOP, 1, 1, 0.02\n",
        "1., 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\nLEFT, P, 150.\n");
   edit(&j, "0.25, 1.\n*BOUNDARY\nTOP, 1, 1, -0.01\n",
@@ -713,28 +654,22 @@ START_TEST(missed_tolerance_goes_on) {
   edit(&j, "COULOMB\n1\n", "COULOMB\n\"if(t < 0.5, 0.9, 1)\"\n");
   ck_assert_int_eq(job_run(&j, "--no-timing"), 1);
   goes_on(&j, 1, "a tolerance missed");
-  char *lst = job_file(&j, "lst");
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "jumps at t = 0.5 from 0.9 to 1"));
   ck_assert_ptr_nonnull(strstr(lst, "violated most at"));
-  free(lst);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(some_jobs_start_anew) {
-  job j = stopped_at(3);
+TEST(some_jobs_start_anew) {
+  JOB j = stopped_at(3);
   edit(&j, "TOP, 1, 1, -0.01\n", "TOP, 1, 1, -0.01\n*ACCURACY, THEORY=YES\n");
   refused(&j, 2, "theorems");
   edit(&j, "*ACCURACY, THEORY=YES", "*ACCURACY, TARGET=5.");
   refused(&j, 2, "TARGET=");
-  job_end(&j);
 }
-END_TEST
 
 /* Flip a byte in the middle of a file of the folder. */
 static void damage(const job *j, const char *suffix) {
-  char path[200];
-  snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffix);
+  PRINTED(path, "%s/%s.%s", j->dir, j->name, suffix);
   FILE *f = fopen(path, "r+b");
   ck_assert_ptr_nonnull(f);
   fseek(f, 0, SEEK_END);
@@ -748,10 +683,10 @@ static void damage(const job *j, const char *suffix) {
   fclose(f);
 }
 
-START_TEST(damaged_files_are_refused) {
+TEST(damaged_files_are_refused) {
   int changes, all;
-  job whole = small_flat(0.4, "*RESTART\n", "AUTO");
-  job j = small_flat(0.4, "*RESTART\n", "AUTO");
+  JOB whole = small_flat(0.4, "*RESTART\n", "AUTO");
+  JOB j = small_flat(0.4, "*RESTART\n", "AUTO");
   run_until(&whole, nothing, 0, 0, &all);
   ck_assert_int_eq(run_until(&j, nothing, all * 2 / 3, SIGKILL, &changes),
                    KILLED);
@@ -774,20 +709,6 @@ START_TEST(damaged_files_are_refused) {
   refused(&j, 4, "layout of another version");
   job_write(&j, "block.rst.h5", "no HDF5\n");
   refused(&j, 4, "no restart file of Protis");
-  job_end(&whole);
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("restart", what_is_read_is_written_again,
-          changed_decks_are_refused_by_card, later_steps_may_change,
-          adapted_increments_go_on, factors_of_adapted_increments_go_on,
-          killed_twice_goes_on, unstable_attempt_is_not_made_twice,
-          chosen_tolerance_goes_on, path_on_a_moving_obstacle_goes_on,
-          paths_of_steps_go_on, known_rate_goes_on,
-          largest_loads_and_energies_go_on, run_without_a_file_begins_anew,
-          files_are_in_the_seal, restart_files_are_equal, errors_of_goals_go_on,
-          factor_goes_on, kind_of_stiffness_goes_on, factor_of_tangents_goes_on,
-          observed_work_goes_on, restart_file_does_not_grow,
-          missed_tolerance_goes_on, some_jobs_start_anew,
-          damaged_files_are_refused)
+UNIT_MAIN("restart")

@@ -2,7 +2,6 @@
  * What other programs and people read of a run: the contacts by name in tables
  * and JOB.json, tables as csv, the lines on a terminal.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/tips.h"
 #include "support/unit.h"
@@ -16,23 +15,20 @@ static const double area = 0.70710678118654752; /* of a tip: half an edge */
 /* Two tips, each in a contact of its own, pressed by 10 and 4, then by twice
  * that: a smooth floor bears what presses. */
 static job pressed(const char *prints) {
-  char text[900];
-  snprintf(
-      text, sizeof text,
-      "*UNITS, LENGTH=\"US ft, [long]\"\n"
-      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-      "*CONTACT, NAME=LEFT, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
-      "*CONTACT, NAME=\"RIGHT, OUTER\", GROUP=FOOT2, OBSTACLE=O, "
-      "NORMAL=OBSTACLE\n"
-      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
-      "*CLOAD\nTIPS, 2, -4.\nFOOT1, 2, -6.\n*SOLVER, TOL=1E-13\n"
-      "%s*END STEP\n"
-      "*STEP\n*QUASISTATIC\n0.5, 1.\n*CLOAD\nTIPS, 2, -8.\nFOOT1, 2, -12.\n"
-      "*END STEP\n",
-      prints);
+  PRINTED(text,
+          "*UNITS, LENGTH=\"US ft, [long]\"\n"
+          "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+          "*CONTACT, NAME=LEFT, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
+          "*CONTACT, NAME=\"RIGHT, OUTER\", GROUP=FOOT2, OBSTACLE=O, "
+          "NORMAL=OBSTACLE\n"
+          "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
+          "*CLOAD\nTIPS, 2, -4.\nFOOT1, 2, -6.\n*SOLVER, TOL=1E-13\n"
+          "%s*END STEP\n"
+          "*STEP\n*QUASISTATIC\n0.5, 1.\n*CLOAD\nTIPS, 2, -8.\nFOOT1, 2, -12.\n"
+          "*END STEP\n",
+          prints);
   job j = tips_new(500, "", text);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
   return j;
 }
 
@@ -43,18 +39,17 @@ static job two_contacts(void) {
 
 /* The next number of that name after *at. */
 static double next_number(const char **at, const char *name) {
-  char key[60];
-  snprintf(key, sizeof key, "\"%s\": ", name);
+  PRINTED(key, "\"%s\": ", name);
   *at = strstr(*at, key);
   ck_assert_msg(*at != NULL, "no %s", name);
   *at += strlen(key);
   return strtod(*at, NULL);
 }
 
-START_TEST(json_has_the_contacts_at_the_end_of_each_step) {
+TEST(json_has_the_contacts_at_the_end_of_each_step) {
   static const double force[] = {10, 4, 20, 8};
-  job j = two_contacts();
-  char *text = job_file(&j, "json");
+  JOB j = two_contacts();
+  FREED char *text = job_file(&j, "json");
   const char *at = strstr(text, "\"contacts\": [");
   ck_assert_ptr_nonnull(at);
   for (int i = 0; i < 4; ++i) {
@@ -70,25 +65,19 @@ START_TEST(json_has_the_contacts_at_the_end_of_each_step) {
     ck_assert_double_eq_tol(next_number(&at, "pressure_max"), force[i] / area,
                             1e-9);
   }
-  free(text);
-  job_end(&j);
 }
-END_TEST
 
 /* The last word of each row of CONTACT. */
-START_TEST(nodes_have_the_name_of_their_contact) {
-  job j = two_contacts();
-  char *text = job_file(&j, "dat");
+TEST(nodes_have_the_name_of_their_contact) {
+  JOB j = two_contacts();
+  FREED char *text = job_file(&j, "dat");
   const char *at = strstr(text, "table CONTACT");
   ck_assert_ptr_nonnull(strstr(at, " contact[-]\n"));
   at = strstr(at, " LEFT\n");
   ck_assert_ptr_nonnull(at);
   ck_assert_ptr_nonnull(strstr(at, " RIGHT,_OUTER\n"));
   ck_assert_ptr_nonnull(strstr(text, " gap[US_ft,__long_] "));
-  free(text);
-  job_end(&j);
 }
-END_TEST
 
 /* protis JOB --table words, through a command that reads it; what that says. */
 static char *read_by(const job *j, const char *words, const char *command) {
@@ -102,7 +91,7 @@ static char *read_by(const job *j, const char *words, const char *command) {
   return said;
 }
 
-START_TEST(tables_are_read_by_other_programs) {
+TEST(tables_are_read_by_other_programs) {
   static const struct {
     const char *words, *command, *said;
   } ways[] = {
@@ -127,30 +116,24 @@ START_TEST(tables_are_read_by_other_programs) {
       {"CONTACT --format tsv", "wc -l | tr -d ' '", "9\n"},
       {"NODES", "sed 's/.*dat has/has/; s/ \\*PRINT.*//'",
        "has no table NODES; it has CONTACT TOTALS;\n"}};
-  job j = two_contacts();
+  JOB j = two_contacts();
   for (size_t i = 0; i < sizeof ways / sizeof *ways; ++i) {
-    char *said = read_by(&j, ways[i].words, ways[i].command);
+    FREED char *said = read_by(&j, ways[i].words, ways[i].command);
     ck_assert_msg(strcmp(said, ways[i].said) == 0, "--table %s: %s",
                   ways[i].words, said);
-    free(said);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* Tables of one kind of several groups are one. */
-START_TEST(rows_have_the_name_of_their_group) {
-  job j = pressed("*PRINT, NODES, GROUP=FOOT1\n*PRINT, NODES, GROUP=FOOT2\n");
-  char *said = read_by(&j, "NODES:last", "cut -d, -f1,2,4 | uniq");
+TEST(rows_have_the_name_of_their_group) {
+  JOB j = pressed("*PRINT, NODES, GROUP=FOOT1\n*PRINT, NODES, GROUP=FOOT2\n");
+  FREED char *said = read_by(&j, "NODES:last", "cut -d, -f1,2,4 | uniq");
   ck_assert_str_eq(said, "step,increment,group\n2,2,FOOT1\n2,2,FOOT2\n");
-  free(said);
-  job_end(&j);
 }
-END_TEST
 
 /* What a change of the results makes of --table: its code, the lines of the
  * table, what it says. */
-START_TEST(tables_that_are_not_whole_are_told) {
+TEST(tables_that_are_not_whole_are_told) {
   static const struct {
     const char *change;
     int code, lines;
@@ -164,29 +147,26 @@ START_TEST(tables_that_are_not_whole_are_told) {
       {"sed -i '/table TOTALS/{n;n;s/ [^ ]*$//}' J.dat", 4, 1,
        " values in a row of "}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-    char command[400];
-    job j = two_contacts();
-    snprintf(command, sizeof command,
-             "for f in %s.*; do mv $f J.${f##*.}; done; %s; "
-             "protis J --table TOTALS 2>said > table; code=$?; "
-             "cat said >&2; "
-             "test $(wc -l < table) = %d && exit $code",
-             j.name, cases[i].change, cases[i].lines);
+    JOB j = two_contacts();
+    PRINTED(command,
+            "for f in %s.*; do mv $f J.${f##*.}; done; %s; "
+            "protis J --table TOTALS 2>said > table; code=$?; "
+            "cat said >&2; "
+            "test $(wc -l < table) = %d && exit $code",
+            j.name, cases[i].change, cases[i].lines);
     ck_assert_msg(job_shell(&j, command) == cases[i].code &&
                       strstr(j.errors, cases[i].said) != NULL &&
                       (cases[i].said[0] != '\0' || j.errors[0] == '\0'),
                   "%s: %s", cases[i].change, j.errors);
-    job_end(&j);
   }
 }
-END_TEST
 
-START_TEST(what_cannot_be_printed_is_an_error) {
+TEST(what_cannot_be_printed_is_an_error) {
   static const char *const words[] = {
       "--help",    "--version",      "--manual deck", "--keywords",
       "--explain", "--list columns", "$J --check",    "$J --table TOTALS"};
   char command[120];
-  job j = two_contacts();
+  JOB j = two_contacts();
   for (size_t i = 0; i < sizeof words / sizeof *words; ++i) {
     snprintf(command, sizeof command, "J=%s; protis %s > /dev/full", j.name,
              words[i]);
@@ -198,9 +178,7 @@ START_TEST(what_cannot_be_printed_is_an_error) {
     ck_assert_ptr_null(strstr(j.errors, "error"));
     ck_assert_str_eq(j.errors + strlen(j.errors) - 2, "0\n");
   }
-  job_end(&j);
 }
-END_TEST
 
 /* What a run with stderr on a terminal writes there; caller frees. */
 static char *on_a_terminal(const job *j, const char *words) {
@@ -223,7 +201,7 @@ static char *on_a_terminal(const job *j, const char *words) {
 }
 
 /* N = 20 and 8 on frictionless tips. */
-START_TEST(run_on_a_terminal_ends_with_what_matters) {
+TEST(run_on_a_terminal_ends_with_what_matters) {
   static const char *const lines[] = {
       "step 1 of 2, time 0.5, increment 1 of 4, ",
       "\nresults   ",
@@ -238,7 +216,7 @@ START_TEST(run_on_a_terminal_ends_with_what_matters) {
       " % of the energy norm\r\n",
       "cost      ",
       " MB of arrays\r\n"};
-  job j = two_contacts();
+  JOB j = two_contacts();
   ck_assert_ptr_null(strpbrk(j.errors, "\r\033"));
   ck_assert_ptr_null(strstr(j.errors, "results "));
   ck_assert_str_eq(j.text, "");
@@ -252,19 +230,17 @@ START_TEST(run_on_a_terminal_ends_with_what_matters) {
   ck_assert_ptr_null(strstr(said, "step 1 of"));
   ck_assert_ptr_null(strstr(said, "results "));
   free(said);
-  job_end(&j);
 }
-END_TEST
 
 /* A strip on 21 contacts, each of a unit of length under a pressure of 1: each
  * has the node at its end, the first both. */
-START_TEST(end_shows_twenty_contacts) {
+TEST(end_shows_twenty_contacts) {
   char cards[2000] = "";
   for (int i = 0; i < 21; ++i)
     snprintf(strchr(cards, '\0'), 90,
              "*CONTACT, NAME=C%d, GROUP=B%d, OBSTACLE=O, NORMAL=OBSTACLE\n", i,
              i);
-  job j = job_begin("strip");
+  JOB j = job_begin("strip");
   job_write(&j, "strip.geo",
             "For i In {0:21}\nPoint(i+1) = {i, 0, 0};\nEndFor\n"
             "Point(23) = {21, 1, 0}; Point(24) = {0, 1, 0};\n"
@@ -281,7 +257,7 @@ START_TEST(end_shows_twenty_contacts) {
             "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 1.\n"
             "*END STEP\n",
             cards);
-  char *said = on_a_terminal(&j, "--no-timing");
+  FREED char *said = on_a_terminal(&j, "--no-timing");
   ck_assert_msg(
       strstr(said, "\nC0        force_x 0, force_y 1.5, open 0, slip 2, ") !=
               NULL &&
@@ -289,14 +265,6 @@ START_TEST(end_shows_twenty_contacts) {
                  "\nC19       force_x 0, force_y 1, open 0, slip 1, "
                  "stick 0\r\n          1 contacts more: JOB.json\r\n") != NULL,
       "%s", said);
-  free(said);
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("results", run_on_a_terminal_ends_with_what_matters,
-          rows_have_the_name_of_their_group, end_shows_twenty_contacts,
-          tables_are_read_by_other_programs, tables_that_are_not_whole_are_told,
-          what_cannot_be_printed_is_an_error,
-          json_has_the_contacts_at_the_end_of_each_step,
-          nodes_have_the_name_of_their_contact)
+UNIT_MAIN("results")

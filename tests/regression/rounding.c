@@ -6,7 +6,6 @@
  * What the listing tells is the error within a factor of ten; nothing is told
  * where nothing is lost; without a digit the run ends with exit code 6.
  */
-#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/block_file.h"
 #include "support/job.h"
@@ -21,15 +20,13 @@ static const mesh_change as_it_is;
 static const double NOISE = 1e-9; /* -, refined answers are better than that */
 
 static void begin(job *j, const char *grid, const mesh_change *change) {
-  char path[100];
-  int *number = NULL;
+  FREED int *number = NULL;
   *j = job_begin("pressed");
-  snprintf(path, sizeof path, "%s/pressed.msh", j->dir);
+  PRINTED(path, "%s/pressed.msh", j->dir);
   FILE *f = fopen(path, "w");
   ck_assert_ptr_nonnull(f);
   ck_assert_int_eq(scene_mesh_write(f, grid, change, &number), 1);
   fclose(f);
-  free(number);
 }
 
 /* A block of the mesh pressed by 1/64 onto the plane below it, which is rough
@@ -54,7 +51,7 @@ static double told(const job *j) {
   static const char *const name[] = {"rounding_energy_percent",
                                      "rounding_stress_percent",
                                      "rounding_displacement_percent"};
-  char *text = job_file(j, "lst");
+  FREED char *text = job_file(j, "lst");
   const char *line = strstr(text, "\n  rounding: ");
   double part[3] = {0.0};
   if (line != NULL)
@@ -69,32 +66,29 @@ static double told(const job *j) {
     ck_assert_msg(fabs(part[i] - all) <= 0.34 * all, "%s: %g, listed %g",
                   name[i], all, part[i]);
   }
-  free(text);
   return 0.01 * part[1];
 }
 
 /* Largest error of the stresses, over those of uniform pressure. */
 static double stress_error(const job *j) {
-  dat e = job_table(j, "ELEMENTS", -1);
+  DAT e = job_table(j, "ELEMENTS", -1);
   double worst = 0.0;
   for (int i = 0; i < e.n_row; ++i) {
     worst = fmax(worst, fabs(dat_at(&e, i, "stress_yy") + 1.0 / 64));
     worst = fmax(worst, fabs(dat_at(&e, i, "stress_xx")));
   }
-  dat_free(&e);
   return 64 * worst;
 }
 
 /* Root mean square of the errors of the stresses, over the same. */
 static double norm_error(const job *j) {
-  dat e = job_table(j, "ELEMENTS", -1);
+  DAT e = job_table(j, "ELEMENTS", -1);
   double sum = 0.0;
   for (int i = 0; i < e.n_row; ++i)
     sum += pow(dat_at(&e, i, "stress_yy") + 1.0 / 64, 2) +
            pow(dat_at(&e, i, "stress_xx"), 2) +
            2.0 * pow(dat_at(&e, i, "stress_xy"), 2);
   double mean = sum / e.n_row;
-  dat_free(&e);
   return 64 * sqrt(mean);
 }
 
@@ -105,17 +99,15 @@ static const char layers[] =
     "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n";
 
 static int run_layers(job *j, const char *contrast, const char *supports) {
-  char text[400];
   const mesh_change wavy = {.map = {wavy_x, wavy_y}};
-  snprintf(text, sizeof text, layers, contrast);
+  PRINTED(text, layers, contrast);
   return run_pressed(j, "rect 6 8 1 1 layers", &wavy, text, supports);
 }
 
 /* The same on a support in the place of the plane. */
 static int run_supported_layers(job *j, const char *contrast) {
-  char text[400];
   const mesh_change wavy = {.map = {wavy_x, wavy_y}};
-  snprintf(text, sizeof text, layers, contrast);
+  PRINTED(text, layers, contrast);
   begin(j, "rect 6 8 1 1 layers", &wavy);
   job_write(j, "pressed.inp",
             "*MESH, FILE=pressed.msh\n%s*STEP\n*STATIC\n*BOUNDARY\n"
@@ -128,7 +120,7 @@ static int run_supported_layers(job *j, const char *contrast) {
 /* Largest error of the displacements of the soft layer below the hard one of
  * that contrast, over the largest. */
 static double displacement_error(const job *j, double contrast) {
-  dat n = job_table(j, "NODES", -1);
+  DAT n = job_table(j, "NODES", -1);
   double worst = 0.0;
   for (int i = 0; i < n.n_row; ++i) {
     const double y = dat_at(&n, i, "y");
@@ -136,17 +128,15 @@ static double displacement_error(const job *j, double contrast) {
     worst = fmax(worst, fabs(64 * dat_at(&n, i, "u_y") - exact) / 0.5);
     worst = fmax(worst, fabs(64 * dat_at(&n, i, "u_x")) / 0.5);
   }
-  dat_free(&n);
   return worst;
 }
 
 static int run_stiff(job *j, const char *nu, const char *formulation) {
-  char text[200];
   const mesh_change wavy = {.map = {wavy_x, wavy_y}};
-  snprintf(text, sizeof text,
-           "*MATERIAL, NAME=M\n*ELASTIC\n1., %s\n"
-           "*SOLID SECTION, ELSET=BODY, MATERIAL=M, FORMULATION=%s\n",
-           nu, formulation);
+  PRINTED(text,
+          "*MATERIAL, NAME=M\n*ELASTIC\n1., %s\n"
+          "*SOLID SECTION, ELSET=BODY, MATERIAL=M, FORMULATION=%s\n",
+          nu, formulation);
   return run_pressed(j, "rect 6 6 1 1", &wavy, text, "*BOUNDARY\nLEFT, 1\n");
 }
 
@@ -183,10 +173,8 @@ static int run_apart(job *j, const char *materials, const char *supports) {
 
 /* Carried by its supports, which press it by 1/1024. */
 static int run_carried(job *j, double way) {
-  char supports[100];
-  snprintf(supports, sizeof supports,
-           "LEFT, 1\nBOTTOM, 2, 2, %.17g\nTOP, 2, 2, %.17g\n", way,
-           way - 1.0 / 1024);
+  PRINTED(supports, "LEFT, 1\nBOTTOM, 2, 2, %.17g\nTOP, 2, 2, %.17g\n", way,
+          way - 1.0 / 1024);
   return run_apart(j,
                    "*MATERIAL, NAME=M\n*ELASTIC\n16., 0.\n*SOLID SECTION, "
                    "ELSET=SOFT, MATERIAL=M\n*SOLID SECTION, ELSET=HARD, "
@@ -196,10 +184,9 @@ static int run_carried(job *j, double way) {
 
 /* The bound of the solver counts what rounding has missed. */
 static void ck_counted(const job *j) {
-  char *json = job_file(j, "json");
+  FREED char *json = job_file(j, "json");
   const int both = strstr(json, "\"rounding_energy_percent\"") != NULL &&
                    strstr(json, "\"solver_error_percent\"") != NULL;
-  free(json);
   if (!both || isnan(job_told(j, "solver_error_percent"))) return;
   ck_assert_double_ge(job_told(j, "solver_error_percent"),
                       0.999 * job_told(j, "rounding_energy_percent"));
@@ -221,23 +208,21 @@ static void ck_refused(job *j, int code) {
   job_end(j);
 }
 
-START_TEST(loss_by_contrast_is_told) {
+TESTS(loss_by_contrast_is_told, 6) {
   static const char *const supports[] = {"*BOUNDARY\nLEFT, 1\n", ""};
   static const char *const contrasts[] = {"1.E8", "1.E10", "1.E12"};
   job j;
   int code = run_layers(&j, contrasts[_i % 3], supports[_i / 3]);
   ck_told(&j, code);
 }
-END_TEST
 
-START_TEST(no_digit_is_left_of_too_much_contrast) {
+TESTS(no_digit_is_left_of_too_much_contrast, 2) {
   job j;
   int code = run_layers(&j, "1.E15", _i == 0 ? "*BOUNDARY\nLEFT, 1\n" : "");
   ck_refused(&j, code);
 }
-END_TEST
 
-START_TEST(loss_without_contact_is_told) {
+TESTS(loss_without_contact_is_told, 4) {
   static const char *const contrasts[] = {"1.E8", "1.E10", "1.E12", "1.E13"};
   job j;
   int code = run_supported_layers(&j, contrasts[_i]);
@@ -247,25 +232,22 @@ START_TEST(loss_without_contact_is_told) {
                 "told %g, error %g", loss, error);
   ck_told(&j, code);
 }
-END_TEST
 
-START_TEST(no_digit_is_left_without_contact) {
+TEST(no_digit_is_left_without_contact) {
   job j;
   int code = run_supported_layers(&j, "1.E15");
   ck_refused(&j, code);
 }
-END_TEST
 
-START_TEST(loss_near_incompressibility_is_told) {
+TESTS(loss_near_incompressibility_is_told, 6) {
   static const char *const nus[] = {"0.49999999", "0.49999999999",
                                     "0.4999999999999"};
   job j;
   int code = run_stiff(&j, nus[_i % 3], _i < 3 ? "STANDARD" : "AVERAGED");
   ck_told(&j, code);
 }
-END_TEST
 
-START_TEST(loss_of_thin_elements_is_told) {
+TESTS(loss_of_thin_elements_is_told, 4) {
   static const char *const meshes[] = {"rect 6 6 1e4 1", "rect 6 6 1 1e4",
                                        "rect 6 6 1e6 1", "rect 6 6 1 1e7"};
   job j;
@@ -275,9 +257,8 @@ START_TEST(loss_of_thin_elements_is_told) {
                          "*BOUNDARY\nLEFT, 1\n");
   ck_told(&j, code);
 }
-END_TEST
 
-START_TEST(no_digit_is_left_of_needles) {
+TEST(no_digit_is_left_of_needles) {
   job j;
   int code = run_pressed(&j, "rect 6 6 1 1e8", &as_it_is,
                          "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
@@ -285,10 +266,9 @@ START_TEST(no_digit_is_left_of_needles) {
                          "*BOUNDARY\nLEFT, 1\n");
   ck_refused(&j, code);
 }
-END_TEST
 
 /* Without lateral strain the energy norm is that of the stresses. */
-START_TEST(loss_of_a_body_led_far_is_told) {
+TESTS(loss_of_a_body_led_far_is_told, 4) {
   job j;
   int code = run_led(&j, ldexp(1.0, 22 + 3 * _i));
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
@@ -298,32 +278,28 @@ START_TEST(loss_of_a_body_led_far_is_told) {
                 "told %g, error %g", loss, error);
   ck_told(&j, code);
 }
-END_TEST
 
-START_TEST(no_digit_is_left_of_a_body_led_too_far) {
+TESTS(no_digit_is_left_of_a_body_led_too_far, 2) {
   job j;
   int code = run_led(&j, ldexp(1.0, 38 + 4 * _i));
   ck_refused(&j, code);
 }
-END_TEST
 
-START_TEST(loss_of_a_body_carried_far_is_told) {
+TESTS(loss_of_a_body_carried_far_is_told, 4) {
   job j;
   int code = run_carried(&j, ldexp(1.0, 20 + 4 * _i));
   ck_told(&j, code);
 }
-END_TEST
 
-START_TEST(no_digit_is_left_of_a_body_carried_too_far) {
+TESTS(no_digit_is_left_of_a_body_carried_too_far, 2) {
   job j;
   int code = run_carried(&j, ldexp(1.0, 38 + 2 * _i));
   ck_refused(&j, code);
 }
-END_TEST
 
 /* A pressed bar that creeps until its elastic strains are no more than the
  * rounding of all: the stresses, whatever rounding makes of them, 0 too. */
-START_TEST(no_digit_is_left_of_a_bar_that_crept_too_far) {
+TESTS(no_digit_is_left_of_a_bar_that_crept_too_far, 3) {
   static const char *const tau[] = {"1E-16", "1E-20", "1E-100"};
   job j;
   begin(&j, "rect 2 2 1 1", &as_it_is);
@@ -337,23 +313,20 @@ START_TEST(no_digit_is_left_of_a_bar_that_crept_too_far) {
   int code = job_run(&j, "");
   ck_refused(&j, code);
 }
-END_TEST
 
 /* A hard layer on a soft one, shifted or turned by the supports of the soft one
  * alone: no stress at all, and displacements right to some digits. */
-START_TEST(rigid_motion_is_right_to_its_digits) {
+TESTS(rigid_motion_is_right_to_its_digits, 6) {
   static const char *const contrasts[] = {"1.E4", "1.E8", "1.E12"};
   static const char *const supports[] = {
       "BOTTOM, 1\nBOTTOM, 2, 2, 0.3125\n",
       "BOTTOM, 1, 1, \"-0.25*(y - 1)\"\nBOTTOM, 2, 2, \"0.25*(x - 3)\"\n"};
   const int turned = _i / 3;
   const double most = turned ? 0.75 : 0.3125;
-  char text[400];
-  job j;
-  snprintf(text, sizeof text, layers, contrasts[_i % 3]);
-  int code = run_apart(&j, text, supports[turned]);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat n = job_table(&j, "NODES", -1);
+  JOB j;
+  PRINTED(text, layers, contrasts[_i % 3]);
+  CK_EXIT(run_apart(&j, text, supports[turned]), 0, j);
+  DAT n = job_table(&j, "NODES", -1);
   double error = 0.0;
   for (int i = 0; i < n.n_row; ++i) {
     const double x = dat_at(&n, i, "x"), y = dat_at(&n, i, "y");
@@ -362,27 +335,22 @@ START_TEST(rigid_motion_is_right_to_its_digits) {
     error = fmax(error, fabs(dat_at(&n, i, "u_x") - u) / most);
     error = fmax(error, fabs(dat_at(&n, i, "u_y") - v) / most);
   }
-  dat_free(&n);
-  char *json = job_file(&j, "json");
+  FREED char *json = job_file(&j, "json");
   const int said = strstr(json, "rounding_displacement_percent") != NULL;
-  free(json);
   const double loss =
       said ? 0.01 * job_told(&j, "rounding_displacement_percent") : 0.0;
   ck_assert_msg(loss >= 0.1 * error - NOISE && loss <= 10.0 * error + NOISE,
                 "told %g, error %g", loss, error);
-  job_end(&j);
 }
-END_TEST
 
 /* Led through the air by its support, a body of many nodes keeps no stress:
  * what it creeps by, and the works, are rounding, so two increments are enough,
  * near nu = 1/2 too. */
-START_TEST(creep_in_free_motion_is_rounding) {
+TESTS(creep_in_free_motion_is_rounding, 3) {
   static const char *const nu[] = {"0.3", "0.499", "0.4999999"};
   const int n = _i == 0 ? 40 : 8;
-  char grid[40];
-  job j;
-  snprintf(grid, sizeof grid, "rect %d %d 1 1", n, n);
+  JOB j;
+  PRINTED(grid, "rect %d %d 1 1", n, n);
   begin(&j, grid, &(mesh_change){.map = {wavy_x, wavy_y}});
   job_write(&j, "pressed.inp",
             "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., %s\n"
@@ -394,16 +362,13 @@ START_TEST(creep_in_free_motion_is_rounding) {
             nu[_i]);
   ck_assert_int_eq(job_run(&j, ""), 0);
   ck_assert_double_eq(job_told(&j, "time_error_percent"), 0);
-  dat e = job_table(&j, "ENERGY", -1);
+  DAT e = job_table(&j, "ENERGY", -1);
   ck_assert_double_le(dat_at(&e, 0, "increment"), 3);
   ck_assert_double_eq(dat_at(&e, 0, "energy_defect_relative"), 0);
-  dat_free(&e);
-  job_end(&j);
 }
-END_TEST
 
 static double lowered_force(const char *nu, const char *visco, int by_top) {
-  job j;
+  JOB j;
   begin(&j, "rect 4 4 1 1", &as_it_is);
   job_write(&j, "pressed.inp",
             "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n200., %s\n"
@@ -417,16 +382,12 @@ static double lowered_force(const char *nu, const char *visco, int by_top) {
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "nu %s: exit %d: %s", nu, code, j.errors);
   ck_assert_ptr_null(strstr(j.errors, "time 0.2:"));
-  dat t = job_table(&j, "TOTALS", -1);
-  const double force = dat_at(&t, 0, "normal");
-  dat_free(&t);
-  job_end(&j);
-  return force;
+  return job_value(&j, "TOTALS", -1, "normal");
 }
 
 /* The body is lowered onto the obstacle, or the obstacle lifted to it: the
  * error bound of what has no stress yet is none. */
-START_TEST(body_lowered_through_a_gap_is_settled) {
+TESTS(body_lowered_through_a_gap_is_settled, 6) {
   static const char *const nu[] = {"0.499", "0.49999", "0.4999999"};
   static const char *const law[] = {"*INELASTIC, LAW=MAXWELL\n1.\n",
                                     "*INELASTIC, LAW=NORTON\n1.E-4, 3.\n"};
@@ -435,12 +396,11 @@ START_TEST(body_lowered_through_a_gap_is_settled) {
   ck_assert_double_eq_tol(lowered_force(nu[_i / 2], law[_i % 2], 1), expected,
                           1e-6 * expected);
 }
-END_TEST
 
 /* Led through the air, back and left there, where it has no displacement that
  * could have a rounding. */
-START_TEST(works_of_free_motion_stay_rounding_at_its_origin) {
-  job j;
+TEST(works_of_free_motion_stay_rounding_at_its_origin) {
+  JOB j;
   begin(&j, "rect 4 4 1 1", &(mesh_change){.map = {wavy_x, wavy_y}});
   job_write(
       &j, "pressed.inp",
@@ -450,26 +410,21 @@ START_TEST(works_of_free_motion_stay_rounding_at_its_origin) {
       "*PRINT, ENERGY\n*END STEP\n*STEP\n*QUASISTATIC\n1., 3.\n"
       "*BOUNDARY\nTOP, 1, 1, \"3.E-4*max(3 - t, 0)*(t - 1.3)\"\n"
       "TOP, 2, 2, \"-3.795E-4*max(3 - t, 0)\"\n*PRINT, ENERGY\n*END STEP\n");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   for (int k = 0; k < 4; ++k) {
-    dat e = job_table(&j, "ENERGY", k);
+    DAT e = job_table(&j, "ENERGY", k);
     ck_assert_msg(dat_at(&e, 0, "energy_defect_relative") == 0.0,
                   "time %g: defect %g", dat_at(&e, 0, "time"),
                   dat_at(&e, 0, "energy_defect_relative"));
-    dat_free(&e);
   }
-  char *json = job_file(&j, "json");
+  FREED char *json = job_file(&j, "json");
   ck_assert_ptr_null(strstr(json, "coarse_mesh"));
-  free(json);
-  job_end(&j);
 }
-END_TEST
 
 /* A block that reaches into the one below by the last digit of the coordinates
  * presses nothing at the start. */
-START_TEST(gaps_of_rounding_make_no_increment) {
-  job j;
+TESTS(gaps_of_rounding_make_no_increment, 2) {
+  JOB j;
   begin(&j, "rect 2 2 1 1 + rect 3 3 1 1 at 0 0.99999999999999989",
         &(mesh_change){.shift = _i});
   job_write(&j, "pressed.inp",
@@ -482,18 +437,14 @@ START_TEST(gaps_of_rounding_make_no_increment) {
             "BOTTOM, 1, 2\nTOP2, 1\nTOP2, 2, 2, -1.E-3\n*PRINT, ENERGY\n"
             "*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 0);
-  dat e = job_table(&j, "ENERGY", -1);
-  ck_assert_double_eq(dat_at(&e, 0, "increment"), 4);
-  dat_free(&e);
-  job_end(&j);
+  ck_assert_double_eq(job_value(&j, "ENERGY", -1, "increment"), 4);
 }
-END_TEST
 
 /* A block turned against a plane, and 1e6 of its sizes away: its nodes stand
  * from it by the rounding of their coordinates. Where that is more than the
  * load moves them, pressures are wrong and the run says so; in line with the
  * axes nothing is lost. */
-START_TEST(pressures_below_the_rounding_of_coordinates_are_told) {
+TESTS(pressures_below_the_rounding_of_coordinates_are_told, 4) {
   static const struct {
     double turn, load, error;
     int code;
@@ -502,7 +453,7 @@ START_TEST(pressures_below_the_rounding_of_coordinates_are_told) {
               {0.7, 1e-7, 0, 1},
               {0, 1e-7, 1e-4, 0}};
   const double turn = rows[_i].turn, load = rows[_i].load;
-  job j;
+  JOB j;
   begin(&j, "rect 4 4 1 1", &(mesh_change){.turn = turn, .shift = 1e6});
   job_write(&j, "pressed.inp",
             "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
@@ -514,23 +465,19 @@ START_TEST(pressures_below_the_rounding_of_coordinates_are_told) {
             -sin(turn), cos(turn), load);
   const int code = job_run(&j, "");
   ck_assert_msg(code == rows[_i].code, "exit %d: %s", code, j.errors);
-  dat d = job_table(&j, "CONTACT", -1);
-  const double found = dat_max(&d, "pressure") / load;
-  dat_free(&d);
+  const double found = job_max(&j, "CONTACT", -1, "pressure") / load;
   if (code == 0)
     ck_assert_double_eq_tol(found, 1, rows[_i].error);
   else
     ck_assert_double_gt(job_told(&j, "rounding_hidden_percent"), 10);
-  job_end(&j);
 }
-END_TEST
 
 /* Friction below the rounding of the pressures is lost, and nothing else is. */
-START_TEST(rounding_may_hide_a_friction_of_next_to_nothing) {
+TEST(rounding_may_hide_a_friction_of_next_to_nothing) {
   static const char *const mu[] = {"0", "1E-300", "1E-20", "1E-14", "1E-12"};
   double normal = 0.0;
   for (int k = 0; k < 5; ++k) {
-    job j = job_begin("slight");
+    JOB j = job_begin("slight");
     block_file_write(&j, (int[]){4, 4}, (double[]){1.0, 1.0}, 0);
     job_write(&j, "slight.inp",
               "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n2.1E5, 0.3\n"
@@ -543,29 +490,24 @@ START_TEST(rounding_may_hide_a_friction_of_next_to_nothing) {
               mu[k]);
     int code = job_run(&j, "");
     ck_assert_msg(code == 0, "mu = %s: exit %d: %s", mu[k], code, j.errors);
-    dat d = job_table(&j, "TOTALS", -1);
+    DAT d = job_table(&j, "TOTALS", -1);
     if (k == 0) normal = dat_at(&d, 0, "normal");
     ck_assert_double_eq_tol(dat_at(&d, 0, "normal") / normal, 1, 1e-9);
-    dat_free(&d);
-    job_end(&j);
   }
 }
-END_TEST
 
-START_TEST(nothing_is_told_of_plain_bodies) {
-  job j;
+TESTS(nothing_is_told_of_plain_bodies, 2) {
+  JOB j;
   int code = run_layers(&j, "10.", _i == 0 ? "*BOUNDARY\nLEFT, 1\n" : "");
   ck_assert_int_eq(code, 0);
   ck_assert_double_eq(told(&j), 0.0);
   ck_assert_double_gt(job_told(&j, "digits_left"), 11.0);
-  job_end(&j);
 }
-END_TEST
 
 /* Heated in a cavity that it fills, held by supports or by the walls, a body
  * near incompressibility stays in place but for rounding, when it is cooled
  * too. */
-START_TEST(body_heated_in_its_cavity_is_right) {
+TESTS(body_heated_in_its_cavity_is_right, 8) {
   static const char *const nu[] = {"0.49999", "0.4999999"};
   char walls[4 * 160] = "", *to = walls;
   static const char *const wall[][3] = {{"LEFT", "0., 0.", "1., 0."},
@@ -573,7 +515,7 @@ START_TEST(body_heated_in_its_cavity_is_right) {
                                         {"BOTTOM", "0., 0.", "0., 1."},
                                         {"TOP", "1., 1.", "0., -1."}};
   const double poisson = strtod(nu[_i / 2 % 2], NULL);
-  job j;
+  JOB j;
   begin(&j, "rect 3 3 1 1", &as_it_is);
   for (int k = 0; k < 4; ++k)
     to += sprintf(to,
@@ -593,22 +535,18 @@ START_TEST(body_heated_in_its_cavity_is_right) {
       nu[_i / 2 % 2], _i % 2 == 0 ? "" : walls,
       _i % 2 == 0 ? "*BOUNDARY\nLEFT, 1\nRIGHT, 1\nBOTTOM, 2\nTOP, 2\n" : "",
       _i < 4 ? "0." : "1.E-9");
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat t = job_table(&j, "ELEMENTS", 1);
+  CK_EXIT(job_run(&j, ""), 0, j);
+  DAT t = job_table(&j, "ELEMENTS", 1);
   for (int k = 0; k < 18; ++k)
     ck_assert_double_eq_tol(dat_at(&t, k, "stress_yy") * (1 - 2 * poisson),
                             -1e-3, 1e-12);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A load straight onto a wall, in whose corner the body touches a roller askew:
  * the wall takes all of it, and nothing else is there but rounding, or what the
  * solver has left: a loose tolerance may leave strains that are wrong (exit 1),
  * but no rounding. */
-START_TEST(load_that_contact_takes_at_once_is_right) {
+TESTS(load_that_contact_takes_at_once_is_right, 16) {
   static const char *const method[] = {"AUTO",
                                        "SOR",
                                        "PROXIMAL",
@@ -619,7 +557,7 @@ START_TEST(load_that_contact_takes_at_once_is_right) {
                                        "PCG, TOL=1E-2"};
   const double least =
       _i / 2 < 4 ? 1e-10 : strtod(strchr(method[_i / 2], '=') + 1, NULL);
-  job j;
+  JOB j;
   begin(&j, _i % 2 == 0 ? "rect 4 4 1 1" : "rect 7 3 1 1", &as_it_is);
   job_write(&j, "pressed.inp",
             "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
@@ -635,20 +573,16 @@ START_TEST(load_that_contact_takes_at_once_is_right) {
   const int loose = strstr(method[_i / 2], "TOL=1E-4") != NULL;
   ck_assert_msg(code == 0 || (loose && code == 1), "%s: exit %d: %s",
                 method[_i / 2], code, j.errors);
-  dat t = job_table(&j, "TOTALS", -1), r = job_table(&j, "REACTIONS", -1);
+  DAT t = job_table(&j, "TOTALS", -1), r = job_table(&j, "REACTIONS", -1);
   ck_assert_double_eq_tol(dat_at(&t, 1, "force_x") + dat_sum(&r, "reaction_x"),
                           -0.1416543, least);
   ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 0.0, least);
-  dat_free(&t);
-  dat_free(&r);
-  job_end(&j);
 }
-END_TEST
 
 /* Loads at the nodes of a body that its supports lift, taken at once by the
  * friction of these nodes, which are open: each method leaves forces within its
  * tolerance, or their rounding, at all of them, and no strains else. */
-START_TEST(load_that_friction_of_open_nodes_takes_is_right) {
+TESTS(load_that_friction_of_open_nodes_takes_is_right, 6) {
   static const char *const methods[] = {"AUTO", "SOR", "AITKEN", "LAGRANGE",
                                         "PROXIMAL"};
   static const struct {
@@ -658,37 +592,33 @@ START_TEST(load_that_friction_of_open_nodes_takes_is_right) {
                {"CPE3", "0.499", 1e-4, 0.1}, {"CPE3", "0.499", 0.01, 0.1},
                {"CAX3", "0.499", 1e-4, 0.1}, {"CAX3", "0.499", 1e-4, 1e-3}};
   for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k) {
-    job j = job_begin("lifted");
-    job_copy(&j, "tests/regression/mesh/square.geo");
-    job_write(&j, "lifted.inp",
-              "*PARAMETER\nN = 3\n*MESH, FILE=square.geo\n"
-              "*MATERIAL, NAME=M\n*ELASTIC\n1E3, %s\n"
-              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
-              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-              "*FRICTION, CONTACT=C, LAW=TRESCA\n\"13.*x\"\n"
-              "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\nTOP, 1\n"
-              "TOP, 2, 2, %g\n*CLOAD\nBOTTOM, 1, %g\n*SOLVER, METHOD=%s\n"
-              "*PRINT, CONTACT\n*END STEP\n",
-              cases[_i].nu, cases[_i].kind, cases[_i].lift, cases[_i].load,
-              methods[k]);
+    JOB j =
+        job_with("lifted", "tests/regression/mesh/square.geo",
+                 "*PARAMETER\nN = 3\n*MESH, FILE=square.geo\n"
+                 "*MATERIAL, NAME=M\n*ELASTIC\n1E3, %s\n"
+                 "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+                 "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+                 "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+                 "*FRICTION, CONTACT=C, LAW=TRESCA\n\"13.*x\"\n"
+                 "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\nTOP, 1\n"
+                 "TOP, 2, 2, %g\n*CLOAD\nBOTTOM, 1, %g\n*SOLVER, METHOD=%s\n"
+                 "*PRINT, CONTACT\n*END STEP\n",
+                 cases[_i].nu, cases[_i].kind, cases[_i].lift, cases[_i].load,
+                 methods[k]);
     int code = job_run(&j, "--quiet");
     ck_assert_msg(code == 0, "%s: exit %d: %s", methods[k], code, j.errors);
-    dat c = job_table(&j, "CONTACT", -1);
+    DAT c = job_table(&j, "CONTACT", -1);
     for (int i = 1; i < c.n_row; ++i)
       ck_assert_double_eq_tol(dat_at(&c, i, "f_t"), -cases[_i].load,
                               1e-8 * cases[_i].load + 1e-9);
-    dat_free(&c);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Contact and slight friction alone hold the body upright: pressed by p it is
  * wider by p nu (1 + nu)/E, soft to that for its bulk modulus. */
-START_TEST(free_body_near_incompressibility_is_right) {
+TEST(free_body_near_incompressibility_is_right) {
   static const double nu = 0.4999999;
-  job j;
+  JOB j;
   begin(&j, "rect 4 4 1 1 alternate", &as_it_is);
   job_write(&j, "pressed.inp",
             "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., %.7f\n"
@@ -699,16 +629,12 @@ START_TEST(free_body_near_incompressibility_is_right) {
             "0.5, 1.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 0.01\n"
             "*PRINT, CONTACT\n*END STEP\n",
             nu);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat c = job_table(&j, "CONTACT", -1);
+  CK_EXIT(job_run(&j, ""), 0, j);
+  DAT c = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < c.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&c, i, "u_t"),
                             0.01 * nu * (1 + nu) * dat_at(&c, i, "x"), 5e-6);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 #define CORNER "TOP, 1, 2\nRIGHT, 1, 2\n*DSLOAD\nLEFT, P, 10.\n"
 #define PRESSED "LEFT, 1\n*DSLOAD\nTOP, P, 10.\n"
@@ -722,7 +648,7 @@ END_TEST
 /* The force on the floor of a body near incompressibility that creeps. */
 static double crept_force(const char *law, const char *visco,
                           const char *supports) {
-  job j;
+  JOB j;
   begin(&j, "rect 4 4 1 1 alternate", &as_it_is);
   job_write(&j, "pressed.inp",
             "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n"
@@ -736,15 +662,11 @@ static double crept_force(const char *law, const char *visco,
             law, visco, supports);
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "%s, %s: exit %d: %s", law, visco, code, j.errors);
-  dat t = job_table(&j, "TOTALS", -1);
-  const double force = dat_at(&t, 0, "normal");
-  dat_free(&t);
-  job_end(&j);
-  return force;
+  return job_value(&j, "TOTALS", -1, "normal");
 }
 
 /* Far beyond the relaxation time, and where parts of the body rest. */
-START_TEST(creep_near_incompressibility_is_right) {
+TESTS(creep_near_incompressibility_is_right, 4) {
   static const struct {
     const char *law[2], *visco[2], *supports;
     double tol;
@@ -762,38 +684,5 @@ START_TEST(creep_near_incompressibility_is_right) {
   ck_assert_double_gt(force[1], 1.0);
   ck_assert_double_eq_tol(force[0], force[1], cases[_i].tol * force[1]);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("rounding");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, loss_by_contrast_is_told, 0, 6);
-  tcase_add_loop_test(tests, no_digit_is_left_of_too_much_contrast, 0, 2);
-  tcase_add_loop_test(tests, loss_without_contact_is_told, 0, 4);
-  tcase_add_test(tests, no_digit_is_left_without_contact);
-  tcase_add_loop_test(tests, loss_near_incompressibility_is_told, 0, 6);
-  tcase_add_loop_test(tests, loss_of_thin_elements_is_told, 0, 4);
-  tcase_add_test(tests, no_digit_is_left_of_needles);
-  tcase_add_loop_test(tests, loss_of_a_body_led_far_is_told, 0, 4);
-  tcase_add_loop_test(tests, no_digit_is_left_of_a_body_led_too_far, 0, 2);
-  tcase_add_loop_test(tests, no_digit_is_left_of_a_bar_that_crept_too_far, 0,
-                      3);
-  tcase_add_loop_test(tests, creep_in_free_motion_is_rounding, 0, 3);
-  tcase_add_loop_test(tests, body_lowered_through_a_gap_is_settled, 0, 6);
-  tcase_add_test(tests, works_of_free_motion_stay_rounding_at_its_origin);
-  tcase_add_loop_test(tests, gaps_of_rounding_make_no_increment, 0, 2);
-  tcase_add_loop_test(
-      tests, pressures_below_the_rounding_of_coordinates_are_told, 0, 4);
-  tcase_add_test(tests, rounding_may_hide_a_friction_of_next_to_nothing);
-  tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
-  tcase_add_test(tests, free_body_near_incompressibility_is_right);
-  tcase_add_loop_test(tests, creep_near_incompressibility_is_right, 0, 4);
-  tcase_add_loop_test(tests, body_heated_in_its_cavity_is_right, 0, 8);
-  tcase_add_loop_test(tests, load_that_contact_takes_at_once_is_right, 0, 16);
-  tcase_add_loop_test(tests, load_that_friction_of_open_nodes_takes_is_right, 0,
-                      6);
-  tcase_add_loop_test(tests, loss_of_a_body_carried_far_is_told, 0, 4);
-  tcase_add_loop_test(tests, no_digit_is_left_of_a_body_carried_too_far, 0, 2);
-  tcase_add_loop_test(tests, rigid_motion_is_right_to_its_digits, 0, 6);
-  return unit_run("rounding", tests);
-}
+UNIT_MAIN("rounding")

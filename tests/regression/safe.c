@@ -2,7 +2,6 @@
  * protis --safe: what a deck names is read only where it is a plain file below
  * the folder of the deck, and never runs.
  */
-#include "base/base.h"
 #include "support/fclib_file.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -34,11 +33,10 @@ static const struct {
 enum { N_READER = sizeof readers / sizeof *readers };
 
 static void write_field(const job *j) {
-  char path[128];
   int no[100];
   double value[100] = {0};
   for (int i = 0; i < 100; ++i) no[i] = i + 1;
-  snprintf(path, sizeof path, "%s/field.h5", j->dir);
+  PRINTED(path, "%s/field.h5", j->dir);
   hid_t file = fclib_begin(path);
   fclib_ints(file, "/node_no", 100, no);
   fclib_reals(file, "/temperature", 100, value);
@@ -46,9 +44,8 @@ static void write_field(const job *j) {
 }
 
 static void write_problem(const job *j) {
-  char path[128];
   const double W[4] = {1, 0, 0, 1}, q[2] = {1, 0}, mu = 0.5;
-  snprintf(path, sizeof path, "%s/problem.h5", j->dir);
+  PRINTED(path, "%s/problem.h5", j->dir);
   fclib_local(path, STORE_TRIPLET, 2, 1, W, q, &mu);
 }
 
@@ -63,8 +60,7 @@ static job begin(void) {
             "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n*END STEP\n");
   write_field(&j);
   write_problem(&j);
-  int code = job_run(&j, "--safe");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, "--safe"), 0, j);
   return j;
 }
 
@@ -74,26 +70,23 @@ static int run(job *j, int reader, const char *file, const char *words) {
   return job_run(j, words);
 }
 
-START_TEST(plain_files_below_the_deck_are_read) {
-  job j = begin();
+TEST(plain_files_below_the_deck_are_read) {
+  JOB j = begin();
   for (int k = 0; k < N_READER; ++k)
     for (int up = 0; up < 2; ++up) {
-      char file[80], folder[80];
-      snprintf(folder, sizeof folder, "%s/sub", j.dir);
+      PRINTED(folder, "%s/sub", j.dir);
       mkdir(folder, 0777);
-      snprintf(file, sizeof file, "%s%s", up ? "sub/../" : "", readers[k].file);
+      PRINTED(file, "%s%s", up ? "sub/../" : "", readers[k].file);
       int code = run(&j, k, file, "--safe");
       ck_assert_msg(code == 0, "%s, %s: exit %d: %s", readers[k].card, file,
                     code, j.errors);
     }
-  job_end(&j);
 }
-END_TEST
 
 /* Each way out of the folder, for each card: refused, and nothing waits. */
-START_TEST(nothing_else_is_read) {
+TEST(nothing_else_is_read) {
   static const char *const ways[] = {"link", "away/", "../", "full", "fifo"};
-  job j = begin(), k = begin();
+  JOB j = begin(), k = begin();
   char from[600], to[400];
   snprintf(from, sizeof from, "%s/away", j.dir);
   ck_assert_int_eq(symlink(k.dir, from), 0);
@@ -119,16 +112,13 @@ START_TEST(nothing_else_is_read) {
                       code, j.errors);
       }
     }
-  job_end(&j);
-  job_end(&k);
 }
-END_TEST
 
 /* A geometry is a program; what bears another name is data. */
-START_TEST(a_mesh_is_a_msh) {
+TEST(a_mesh_is_a_msh) {
   static const char *const names[] = {"square.geo", "square.GEO", "square.step",
                                       "square.msh.opt", "square"};
-  job j = begin();
+  JOB j = begin();
   for (int i = 0; i < 5; ++i) {
     job_write(&j, names[i], "SystemCall \"touch %s/job.ran\";\n", j.dir);
     ck_assert_int_eq(run(&j, 1, names[i], "--safe"), i < 2 ? 2 : 3);
@@ -136,9 +126,6 @@ START_TEST(a_mesh_is_a_msh) {
         j.errors, i < 2 ? "the mesh must be a .msh" : "is no .geo and does"));
     ck_assert(!job_has(&j, "ran"));
   }
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("safe", plain_files_below_the_deck_are_read, nothing_else_is_read,
-          a_mesh_is_a_msh)
+UNIT_MAIN("safe")

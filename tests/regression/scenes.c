@@ -7,7 +7,6 @@
 
 const int job_without_fields = 1;
 
-START_TEST(no_quick_scene_fails) { ck_assert_int_eq(scenes_run(1, stdout), 0); }
-END_TEST
+TEST(no_quick_scene_fails) { ck_assert_int_eq(scenes_run(1, stdout), 0); }
 
-UNIT_MAIN("scenes", no_quick_scene_fails)
+UNIT_MAIN("scenes")

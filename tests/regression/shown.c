@@ -3,7 +3,6 @@
  * listing, tables, JSON, XDMF or HDF5, and nothing of a file that *INCLUDE
  * names but that is no deck.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -26,10 +25,9 @@ static void files_must_be_tame(const job *j) {
   static const char *const texts[] = {"lst", "sta",  "cvg",
                                       "dat", "json", "xdmf"};
   for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i) {
-    char *text = job_file(j, texts[i]);
+    FREED char *text = job_file(j, texts[i]);
     ck_assert_ptr_nonnull(text);
     must_be_tame(text, texts[i]);
-    free(text);
   }
 }
 
@@ -37,12 +35,11 @@ static void files_must_be_tame(const job *j) {
  * obstacle, amplitude, step and file. */
 static job wild_job(const char *more) {
   job j = job_begin("wild");
-  char command[400];
   job_copy(&j, "tests/regression/bad/square.msh");
-  snprintf(command, sizeof command,
-           "cd '%s' && sed 's/\"BOTTOM\"/\"" WILD "\"/' square.msh > '" WILD
-           ".msh'",
-           j.dir);
+  PRINTED(command,
+          "cd '%s' && sed 's/\"BOTTOM\"/\"" WILD "\"/' square.msh > '" WILD
+          ".msh'",
+          j.dir);
   ck_assert_int_eq(system(command), 0);
   job_write(&j, "wild.inp",
             "*HEADING\n" WILD "\n*MESH, FILE=" WILD
@@ -64,24 +61,19 @@ static job wild_job(const char *more) {
   return j;
 }
 
-START_TEST(results_show_no_control_character) {
-  job j = wild_job("");
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+TEST(results_show_no_control_character) {
+  JOB j = wild_job("");
+  CK_EXIT(job_run(&j, ""), 0, j);
   files_must_be_tame(&j);
-  char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
+  FREED char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
   ck_assert_ptr_nonnull(strstr(lst, TAME));
   ck_assert_ptr_nonnull(strstr(json, "a\\\\x1B[31mb\\\\xC2\\\\x9Bc"));
   ck_assert_int_eq(job_run(&j, "--check"), 0);
   must_be_tame(j.text, "--check");
   ck_assert_ptr_nonnull(strstr(j.text, TAME));
-  free(lst);
-  free(json);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(messages_show_no_control_character) {
+TEST(messages_show_no_control_character) {
   static const char *const wrong[] = {
       "*" WILD ", " WILD "=" WILD "\n", "*DSLOAD\nX" WILD ", P, 1.\n",
       "*DSLOAD\nTOP, " WILD ", 1.\n",   "*DSLOAD\nTOP, P, \"" WILD "\"\n",
@@ -89,33 +81,29 @@ START_TEST(messages_show_no_control_character) {
       "*SOLVER, METHOD=" WILD "\n",     "*DSLOAD\nTOP, P, <" WILD ">\n",
       "*DSLOAD\nTOP, P, 1., " WILD "\n"};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
-    job j = wild_job(wrong[i]);
+    JOB j = wild_job(wrong[i]);
     int code = job_run(&j, "");
     ck_assert_msg(code >= 2 && code <= 4, "%s: exit %d", wrong[i], code);
     must_be_tame(j.errors, wrong[i]);
     ck_assert_ptr_nonnull(strstr(j.errors, "[31m"));
-    job_end(&j);
   }
 }
-END_TEST
 
-START_TEST(command_line_shows_no_control_character) {
+TEST(command_line_shows_no_control_character) {
   static const char *const words[] = {
       "--keywords '" WILD "'", "'--x" WILD "'",   "--list '" WILD "'",
       "-D '" WILD "'",         "-D '" WILD "=1'", "-o '/dev/null/" WILD "'"};
   for (size_t i = 0; i < sizeof words / sizeof *words; ++i) {
-    job j = wild_job("");
+    JOB j = wild_job("");
     ck_assert_int_ne(job_run(&j, words[i]), 0);
     must_be_tame(j.errors, words[i]);
     ck_assert_ptr_nonnull(strstr(j.errors, "[31m"));
-    job_end(&j);
   }
 }
-END_TEST
 
 /* The name of the deck is that of the results. */
-START_TEST(name_of_a_job_shows_no_control_character) {
-  job j = wild_job("");
+TEST(name_of_a_job_shows_no_control_character) {
+  JOB j = wild_job("");
   char command[600];
   snprintf(command, sizeof command,
            "cd '%s' && cp wild.inp '" WILD ".inp' && '%s' '" WILD
@@ -126,13 +114,10 @@ START_TEST(name_of_a_job_shows_no_control_character) {
   snprintf(j.name, sizeof j.name, "said");
   snprintf(command, sizeof command, "mv '%s/said' '%s/said.txt'", j.dir, j.dir);
   ck_assert_int_eq(system(command), 0);
-  char *text = job_file(&j, "txt");
+  FREED char *text = job_file(&j, "txt");
   must_be_tame(text, "job");
   ck_assert_ptr_nonnull(strstr(text, TAME ".lst"));
-  free(text);
-  job_end(&j);
 }
-END_TEST
 
 /* Files that lie about a machine. */
 static const char *const files[] = {
@@ -160,10 +145,10 @@ static const char *const above[] = {"",
                                     "*LEGACY, FORMAT=(10A8)\n*BOUNDARY\n",
                                     "*END STEP\n"};
 
-START_TEST(include_shows_nothing_of_what_is_no_deck) {
+TEST(include_shows_nothing_of_what_is_no_deck) {
   for (size_t i = 0; i < sizeof files / sizeof *files; ++i)
     for (size_t k = 0; k < sizeof above / sizeof *above; ++k) {
-      job j = job_begin("job");
+      JOB j = job_begin("job");
       job_copy(&j, "tests/regression/bad/square.msh");
       job_write(&j, "secret", "%s", files[i]);
       job_write(&j, "job.inp",
@@ -179,17 +164,14 @@ START_TEST(include_shows_nothing_of_what_is_no_deck) {
                         strstr(j.errors, "SESAME") == NULL,
                     "%s below %s: %s", files[i], above[k], j.errors);
       ck_assert_ptr_null(strstr(j.text, "sesame"));
-      char *lst = job_file(&j, "lst");
+      FREED char *lst = job_file(&j, "lst");
       if (lst != NULL) ck_assert_ptr_null(strstr(lst, "sesame"));
-      free(lst);
-      job_end(&j);
     }
 }
-END_TEST
 
 /* A deck in parts is shown, and so is the place in data without a card. */
-START_TEST(include_shows_a_deck) {
-  job j = job_begin("job");
+TEST(include_shows_a_deck) {
+  JOB j = job_begin("job");
   job_write(&j, "part.inc", "*ELASTIC\n1., x\n");
   job_write(&j, "job.inp", "*MATERIAL, NAME=M\n*INCLUDE, INPUT=part.inc\n");
   ck_assert_int_eq(job_run(&j, ""), 2);
@@ -201,12 +183,6 @@ START_TEST(include_shows_a_deck) {
   ck_assert_int_eq(job_run(&j, ""), 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "part.inc:1:5: error P1024: not a "));
   ck_assert_ptr_null(strstr(j.errors, "1., x"));
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("shown", results_show_no_control_character,
-          messages_show_no_control_character,
-          command_line_shows_no_control_character,
-          name_of_a_job_shows_no_control_character,
-          include_shows_nothing_of_what_is_no_deck, include_shows_a_deck)
+UNIT_MAIN("shown")

@@ -6,7 +6,6 @@
  * Unit square, nu = 0, E = 1000, G = 500, pressed by 10 on a floor with
  * mu = 0.4: u_y = -0.01 y.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -15,8 +14,7 @@
 /* Cards before the steps, the steps; the exit code. */
 static int write_and_run(job *j, int n, const char *before, const char *steps) {
   job_copy(j, "tests/regression/mesh/square.geo");
-  char deck[64];
-  snprintf(deck, sizeof deck, "%s.inp", j->name);
+  PRINTED(deck, "%s.inp", j->name);
   job_write(j, deck,
             "*PARAMETER\nN = %d\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
             "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -25,14 +23,6 @@ static int write_and_run(job *j, int n, const char *before, const char *steps) {
             "*FRICTION, CONTACT=F, LAW=COULOMB\n0.4\n%s%s",
             n, before, steps);
   return job_run(j, "--no-timing");
-}
-
-static int listing_has(const job *j, const char *text) {
-  char *lst = job_file(j, "lst");
-  ck_assert_ptr_nonnull(lst);
-  int found = strstr(lst, text) != NULL;
-  free(lst);
-  return found;
 }
 
 #define PRINT "*PRINT, NODES, CONTACT, ENERGY\n*END STEP\n"
@@ -47,12 +37,12 @@ static int listing_has(const job *j, const char *text) {
 
 /* Sheared by 2 < mu p: stick, u_x = 2 y / 500. The strain energy starts with
  * 1/2 p^2 / E = 0.05, and the balance counts from there. */
-START_TEST(compatible_start_goes_on) {
-  job j = job_begin("start");
+TEST(compatible_start_goes_on) {
+  JOB j = job_begin("start");
   ck_assert_int_eq(write_and_run(&j, 4, PRESSED, HOLD), 0);
-  ck_assert(listing_has(&j, "\n  compatible\n"));
+  ck_assert(job_tells(&j, "\n  compatible\n"));
   for (int k = 0; k < 2; ++k) {
-    dat u = job_table(&j, "NODES", k), e = job_table(&j, "ENERGY", k);
+    DAT u = job_table(&j, "NODES", k), e = job_table(&j, "ENERGY", k);
     for (int i = 0; i < u.n_row; ++i) {
       double y = dat_at(&u, i, "y");
       ck_assert_double_eq_tol(dat_at(&u, i, "u_y"), -0.01 * y, 1e-12);
@@ -64,81 +54,68 @@ START_TEST(compatible_start_goes_on) {
     ck_assert_double_eq_tol(dat_at(&e, 0, "external_work"), tau * tau / 1000,
                             1e-12);
     ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
-    dat_free(&u);
-    dat_free(&e);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* Where the foot was dragged to before: it sticks there, which the friction of
  * a start at the origin would not know. */
-START_TEST(start_remembers_where_the_foot_is) {
-  job j = job_begin("start");
+TEST(start_remembers_where_the_foot_is) {
+  JOB j = job_begin("start");
   ck_assert_int_eq(
       write_and_run(&j, 4, PRESSED "BODY, 1, \"0.003 + 1*y/500\"\n",
                     "*STEP\n*QUASISTATIC\n1., 1.\n*DSLOAD\n"
                     "TOP, P, \"10+0*t\"\nTOP, TX, \"1+0*t\"\n"
                     "RIGHT, TY, \"1+0*t\"\nLEFT, TY, \"-1+0*t\"\n" PRINT),
       0);
-  dat c = job_table(&j, "CONTACT", -1);
+  DAT c = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < c.n_row; ++i) {
     ck_assert_double_eq_tol(dat_at(&c, i, "u_t"), 0.003, 1e-12);
     ck_assert_double_eq_tol(dat_at(&c, i, "slip"), 0, 1e-12);
     ck_assert_double_eq_tol(dat_at(&c, i, "traction_t"), -1, 1e-8);
   }
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
 /* A given force in balance with the load is a start too. */
-START_TEST(given_force_goes_on) {
-  job j = job_begin("start");
-  int code = write_and_run(&j, 4, "*CONTACT FORCE, CONTACT=F\n10.\n" PRESSED,
-                           "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\n"
-                           "TOP, 2, 2, \"-0.01+0*t\"\n" PRINT);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  ck_assert(listing_has(&j, "\n  compatible\n"));
-  dat u = job_table(&j, "NODES", -1);
+TEST(given_force_goes_on) {
+  JOB j = job_begin("start");
+  CK_EXIT(write_and_run(&j, 4, "*CONTACT FORCE, CONTACT=F\n10.\n" PRESSED,
+                        "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\n"
+                        "TOP, 2, 2, \"-0.01+0*t\"\n" PRINT),
+          0, j);
+  ck_assert(job_tells(&j, "\n  compatible\n"));
+  DAT u = job_table(&j, "NODES", -1);
   for (int i = 0; i < u.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&u, i, "u_y"), -0.01 * dat_at(&u, i, "y"),
                             1e-12);
-  dat_free(&u);
-  job_end(&j);
 }
-END_TEST
 
 /* A cube above a floor at -0.3 that has moved by 0.15 towards one of two walls,
  * whose gaps are 0.1 and 0.2: to the far one it may. */
-START_TEST(walls_of_a_corner_have_gaps_of_their_own) {
+TEST(walls_of_a_corner_have_gaps_of_their_own) {
   static const char walls[] = "xy";
   for (int far = 0; far < 2; ++far)
     for (int moved = 0; moved < 2; ++moved) {
-      job j = job_begin("corner");
-      job_copy(&j, "tests/regression/mesh/cube.geo");
-      job_write(&j, "corner.inp",
-                "*PARAMETER\nN = 1\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
-                "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-                "*OBSTACLE, NAME=Z, TYPE=PLANE\n0., 0., -0.3\n0., 0., 1.\n"
-                "*OBSTACLE, NAME=X, TYPE=PLANE\n%g, 0., 0.\n1., 0., 0.\n"
-                "*OBSTACLE, NAME=Y, TYPE=PLANE\n0., %g, 0.\n0., 1., 0.\n"
-                "*CONTACT, NAME=Z, GROUP=BOTTOM, OBSTACLE=Z\n"
-                "*CONTACT, NAME=X, GROUP=LEFT, OBSTACLE=X\n"
-                "*CONTACT, NAME=Y, GROUP=FRONT, OBSTACLE=Y\n"
-                "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\nBODY, %d, -0.15\n"
-                "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 3\n"
-                "TOP, %d, %d, \"-0.15+0*t\"\n*PRINT, NODES\n*END STEP\n",
-                far == 0 ? -0.2 : -0.1, far == 1 ? -0.2 : -0.1, moved + 1,
-                moved + 1, moved + 1);
+      JOB j = job_with(
+          "corner", "tests/regression/mesh/cube.geo",
+          "*PARAMETER\nN = 1\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
+          "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+          "*OBSTACLE, NAME=Z, TYPE=PLANE\n0., 0., -0.3\n0., 0., 1.\n"
+          "*OBSTACLE, NAME=X, TYPE=PLANE\n%g, 0., 0.\n1., 0., 0.\n"
+          "*OBSTACLE, NAME=Y, TYPE=PLANE\n0., %g, 0.\n0., 1., 0.\n"
+          "*CONTACT, NAME=Z, GROUP=BOTTOM, OBSTACLE=Z\n"
+          "*CONTACT, NAME=X, GROUP=LEFT, OBSTACLE=X\n"
+          "*CONTACT, NAME=Y, GROUP=FRONT, OBSTACLE=Y\n"
+          "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\nBODY, %d, -0.15\n"
+          "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 3\n"
+          "TOP, %d, %d, \"-0.15+0*t\"\n*PRINT, NODES\n*END STEP\n",
+          far == 0 ? -0.2 : -0.1, far == 1 ? -0.2 : -0.1, moved + 1, moved + 1,
+          moved + 1);
       int code = job_run(&j, "");
       ck_assert_msg(code == (far == moved ? 0 : 2), "far %c, moved %c: %d: %s",
                     walls[far], walls[moved], code, j.errors);
-      ck_assert(listing_has(&j, "\n  compatible\n") == (far == moved));
-      job_end(&j);
+      ck_assert(job_tells(&j, "\n  compatible\n") == (far == moved));
     }
 }
-END_TEST
 
 #define STEP(loads) "*STEP\n*QUASISTATIC\n0.5, 1.\n" loads PRINT
 
@@ -152,7 +129,7 @@ static double start_figure(const job *j, const char *name) {
 }
 
 /* Each condition broken alone; forces of uniform stress on nodes 1/4 apart. */
-START_TEST(incompatible_start_is_refused_with_its_defect) {
+TEST(incompatible_start_is_refused_with_its_defect) {
   static const struct {
     const char *lines, *steps, *kind;
     double worst; /* N, 0: depends on the mesh                                */
@@ -174,15 +151,14 @@ START_TEST(incompatible_start_is_refused_with_its_defect) {
                {"BODY, 2, -0.001\n", STEP("*BOUNDARY\nTOP, 1\n"),
                 "unilateral condition not met", 0}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    char lines[300];
-    job j = job_begin("start");
-    snprintf(lines, sizeof lines, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n%s",
-             cases[k].lines);
+    JOB j = job_begin("start");
+    PRINTED(lines, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n%s",
+            cases[k].lines);
     int code = write_and_run(&j, 4, lines, cases[k].steps);
     ck_assert_msg(code == 2, "case %zu: exit %d: %s", k, code, j.errors);
     ck_assert_ptr_nonnull(strstr(j.errors, "P4014"));
     ck_assert_msg(strstr(j.errors, cases[k].kind) != NULL, "%s", j.errors);
-    ck_assert(listing_has(&j, "\n  REFUSED\n"));
+    ck_assert(job_tells(&j, "\n  REFUSED\n"));
     double force = start_figure(&j, "largest force");
     double defect = start_figure(&j, "largest defect");
     ck_assert_double_ge(force, defect);
@@ -192,33 +168,30 @@ START_TEST(incompatible_start_is_refused_with_its_defect) {
     if (cases[k].worst > 0)
       ck_assert_double_eq_tol(strtod(strstr(j.errors, "defect ") + 7, NULL),
                               cases[k].worst, 6e-3);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Sheared too far: relaxed, the foot slips until sigma_xy = mu p = 4, that is
  * to 0.01 - 4/500, and stays. */
-START_TEST(incompatible_start_is_relaxed) {
+TEST(incompatible_start_is_relaxed) {
   static const char *const procedures[] = {"*QUASISTATIC\n0.5, 1.\n",
                                            "*STATIC\n"};
   for (int p = 0; p < 2; ++p) {
-    char steps[400];
-    job j = job_begin("start");
-    snprintf(steps, sizeof steps,
-             "*STEP\n%s*BOUNDARY\nTOP, 1, 1, \"0.01+0*t\"\n*DSLOAD\n"
-             "TOP, P, \"10+0*t\"\nRIGHT, TY, \"4+0*t\"\n"
-             "LEFT, TY, \"-4+0*t\"\n" PRINT,
-             procedures[p]);
+    JOB j = job_begin("start");
+    PRINTED(steps,
+            "*STEP\n%s*BOUNDARY\nTOP, 1, 1, \"0.01+0*t\"\n*DSLOAD\n"
+            "TOP, P, \"10+0*t\"\nRIGHT, TY, \"4+0*t\"\n"
+            "LEFT, TY, \"-4+0*t\"\n" PRINT,
+            procedures[p]);
     ck_assert_int_eq(write_and_run(&j, 4,
                                    "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, "
                                    "INCOMPATIBLE=RELAX\nBODY, 2, \"-0.01*y\"\n"
                                    "BODY, 1, \"0.01*y\"\n",
                                    steps),
                      0);
-    ck_assert(listing_has(&j, "step 1  increment 0  time 0.0"));
+    ck_assert(job_tells(&j, "step 1  increment 0  time 0.0"));
     for (int k = 0; k < 2; ++k) {
-      dat c = job_table(&j, "CONTACT", k), e = job_table(&j, "ENERGY", k);
+      DAT c = job_table(&j, "CONTACT", k), e = job_table(&j, "ENERGY", k);
       for (int i = 0; i < c.n_row; ++i) {
         ck_assert_double_eq_tol(dat_at(&c, i, "u_t"), 0.002, 1e-10);
         ck_assert_double_eq_tol(dat_at(&c, i, "traction_t"), -4, 1e-8);
@@ -227,97 +200,81 @@ START_TEST(incompatible_start_is_relaxed) {
       ck_assert_double_eq_tol(dat_at(&e, 0, "strain_energy"),
                               0.05 + 16.0 / 1000, 1e-10);
       ck_assert_double_eq_tol(dat_at(&e, 0, "external_work"), 0, 1e-12);
-      dat_free(&c);
-      dat_free(&e);
     }
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Carried aside and into the floor as a whole, then held in its place without
  * load: no method needs forces, nor a step. */
-START_TEST(start_without_load_is_relaxed_to_rest) {
+TEST(start_without_load_is_relaxed_to_rest) {
   static const char *const all[] = {"AUTO",   "NEWTON",   "LEMKE",
                                     "SOR",    "AITKEN",   "PCG",
                                     "AUGLAG", "LAGRANGE", "PROXIMAL"};
   for (size_t m = 0; m < sizeof all / sizeof *all; ++m) {
-    job j = job_begin("rest");
-    job_copy(&j, "tests/regression/mesh/square.geo");
-    job_write(&j, "rest.inp",
-              "*PARAMETER\nN = 5\n*MESH, FILE=square.geo\n"
-              "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.385\n"
-              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
-              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-              "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
-              "*FRICTION, CONTACT=F, LAW=COULOMB\n0.4\n"
-              "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, INCOMPATIBLE=RELAX\n"
-              "BODY, 1, 7E-4\nBODY, 2, -8E-4\n*STEP\n*QUASISTATIC\n0.5, 1.\n"
-              "*BOUNDARY\nLEFT, 1, 1, \"0*t\"\nTOP, 2, 2, \"-0.01*t\"\n"
-              "*SOLVER, METHOD=%s\n" PRINT,
-              all[m]);
+    JOB j =
+        job_with("rest", "tests/regression/mesh/square.geo",
+                 "*PARAMETER\nN = 5\n*MESH, FILE=square.geo\n"
+                 "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.385\n"
+                 "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+                 "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+                 "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+                 "*FRICTION, CONTACT=F, LAW=COULOMB\n0.4\n"
+                 "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, INCOMPATIBLE=RELAX\n"
+                 "BODY, 1, 7E-4\nBODY, 2, -8E-4\n*STEP\n*QUASISTATIC\n0.5, 1.\n"
+                 "*BOUNDARY\nLEFT, 1, 1, \"0*t\"\nTOP, 2, 2, \"-0.01*t\"\n"
+                 "*SOLVER, METHOD=%s\n" PRINT,
+                 all[m]);
     const int code = job_run(&j, "--no-timing");
     ck_assert_msg(code == 0, "%s: exit %d: %s", all[m], code, j.errors);
-    dat u = job_table(&j, "NODES", 0), c = job_table(&j, "CONTACT", 0);
+    DAT u = job_table(&j, "NODES", 0), c = job_table(&j, "CONTACT", 0);
     ck_assert(dat_max(&u, "u_r") == 0 && dat_max(&u, "u_z") == 0);
     ck_assert(dat_max(&c, "f_n") == 0 && dat_max(&c, "f_t") == 0);
-    dat_free(&u);
-    dat_free(&c);
-    ck_assert(listing_has(&j, "iterations 0,"));
-    job_end(&j);
+    ck_assert(job_tells(&j, "iterations 0,"));
   }
 }
-END_TEST
 
 #define DRAG(u) "*BOUNDARY\nTOP, 1, 1, " u "\n"
 
 /* Dragged one way and back: in one run of two steps, and in two runs, the
  * second from the end of the first. */
-START_TEST(end_of_a_run_is_a_start) {
-  job one = job_begin("one"), two = job_begin("two");
+TEST(end_of_a_run_is_a_start) {
+  JOB one = job_begin("one"), two = job_begin("two");
   const char *first =
       "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, \"10*min(1, t)\"\n" DRAG(
           "0.01") PRINT;
   const char *back = "*STEP\n*QUASISTATIC\n0.25, 1.\n" DRAG("-0.01") PRINT;
-  char both[1000];
-  snprintf(both, sizeof both, "%s%s", first, back);
+  PRINTED(both, "%s%s", first, back);
   ck_assert_int_eq(write_and_run(&one, 6, "", both), 0);
   ck_assert_int_eq(write_and_run(&two, 6, "", first), 0);
   snprintf(two.name, sizeof two.name, "back");
-  int code = write_and_run(
-      &two, 6, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=two.h5\n",
-      "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, \"10+0*t\"\n" DRAG(
-          "-0.01") PRINT);
-  ck_assert_msg(code == 0, "exit %d: %s", code, two.errors);
-  ck_assert(listing_has(&two, "initial state: end of two.h5, time 1.0"));
+  CK_EXIT(
+      write_and_run(
+          &two, 6, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=two.h5\n",
+          "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, \"10+0*t\"\n" DRAG(
+              "-0.01") PRINT),
+      0, two);
+  ck_assert(job_tells(&two, "initial state: end of two.h5, time 1.0"));
   for (int k = 0; k < 4; ++k) {
-    dat a = job_table(&one, "NODES", 4 + k), b = job_table(&two, "NODES", k);
-    dat e = job_table(&two, "ENERGY", k);
+    DAT a = job_table(&one, "NODES", 4 + k), b = job_table(&two, "NODES", k);
     for (int i = 0; i < a.n_row; ++i) {
       ck_assert_double_eq_tol(dat_at(&a, i, "u_x"), dat_at(&b, i, "u_x"),
                               1e-10);
       ck_assert_double_eq_tol(dat_at(&a, i, "u_y"), dat_at(&b, i, "u_y"),
                               1e-10);
     }
-    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-8);
-    dat_free(&a);
-    dat_free(&b);
-    dat_free(&e);
+    ck_assert_double_le(
+        fabs(job_value(&two, "ENERGY", k, "energy_defect_relative")), 1e-8);
   }
-  job_end(&one);
-  job_end(&two);
 }
-END_TEST
 
 /* The last of 4 records of JOB.h5 becomes one of six digits. */
 static void make_long(const job *j, int n) {
-  char path[100], last[40];
   const hsize_t size = (hsize_t)n;
-  double *t = malloc((size_t)n * sizeof *t);
+  FREED double *t = malloc((size_t)n * sizeof *t);
   ck_assert_ptr_nonnull(t);
   for (int i = 0; i < n; ++i) t[i] = (i + 1.0) / n;
-  snprintf(path, sizeof path, "%s/%s.h5", j->dir, j->name);
-  snprintf(last, sizeof last, "/fields/u/%d", n);
+  PRINTED(path, "%s/%s.h5", j->dir, j->name);
+  PRINTED(last, "/fields/u/%d", n);
   hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
   hid_t space = H5Screate_simple(1, &size, NULL);
   ck_assert_int_ge(H5Ldelete(file, "/fields/time", H5P_DEFAULT), 0);
@@ -331,11 +288,10 @@ static void make_long(const job *j, int n) {
   H5Dclose(set);
   H5Sclose(space);
   ck_assert_int_ge(H5Fclose(file), 0);
-  free(t);
 }
 
-START_TEST(end_of_a_long_run_is_a_start) {
-  job j = job_begin("long");
+TEST(end_of_a_long_run_is_a_start) {
+  JOB j = job_begin("long");
   ck_assert_int_eq(
       write_and_run(&j, 2, "",
                     "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, 10.\n"
@@ -343,16 +299,14 @@ START_TEST(end_of_a_long_run_is_a_start) {
       0);
   make_long(&j, 100001);
   snprintf(j.name, sizeof j.name, "next");
-  int code = write_and_run(
-      &j, 2, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=long.h5\n",
-      STEP("*DSLOAD\nTOP, P, \"10+0*t\"\n"));
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  job_end(&j);
+  CK_EXIT(write_and_run(
+              &j, 2, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=long.h5\n",
+              STEP("*DSLOAD\nTOP, P, \"10+0*t\"\n")),
+          0, j);
 }
-END_TEST
 
 /* Another mesh, no such file, the file of the run itself. */
-START_TEST(wrong_files_are_refused) {
+TEST(wrong_files_are_refused) {
   static const struct {
     const char *name, *file, *says;
     int n, code;
@@ -360,13 +314,11 @@ START_TEST(wrong_files_are_refused) {
                {"other", "nothing.h5", "No such file", 4, 4},
                {"other", "other.inp", "is no HDF5 file", 4, 4},
                {"first", "first.h5", "would overwrite", 4, 2}};
-  job j = job_begin("first");
+  JOB j = job_begin("first");
   ck_assert_int_eq(write_and_run(&j, 4, "", STEP("*DSLOAD\nTOP, P, 10.\n")), 0);
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    char lines[200];
-    snprintf(lines, sizeof lines,
-             "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=%s\n",
-             cases[k].file);
+    PRINTED(lines, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=%s\n",
+            cases[k].file);
     snprintf(j.name, sizeof j.name, "%s", cases[k].name);
     int code = write_and_run(&j, cases[k].n, lines,
                              STEP("*DSLOAD\nTOP, P, \"10+0*t\"\n"));
@@ -374,9 +326,7 @@ START_TEST(wrong_files_are_refused) {
                   j.errors);
     ck_assert_msg(strstr(j.errors, cases[k].says) != NULL, "%s", j.errors);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* The square held at its top, E = 1000: from a start under strain, relaxed or
  * not, or by an inelastic strain under no stress, to a strain of -1.5e-3, less
@@ -394,37 +344,27 @@ static const struct {
              "*INELASTIC, LAW=MAXWELL\n1.\n", "VISCO, INTEGRATOR=MIDPOINT",
              -1.06, 5.618e-4}};
 
-START_TEST(works_count_from_the_stress_of_the_start) {
+TEST(works_count_from_the_stress_of_the_start) {
   for (size_t k = 0; k < sizeof held / sizeof *held; ++k) {
-    job j = job_begin("held");
-    job_copy(&j, "tests/regression/mesh/square.geo");
-    job_write(&j, "held.inp",
-              "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-              "*ELASTIC\n1000., 0.\n*EXPANSION\n1.E-5\n%s"
-              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
-              "*INITIAL CONDITIONS, TYPE=DISPLACEMENT%s*STEP\n*%s\n0.5, 0.5\n"
-              "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\nTOP, 2, 2, -0.0015\n"
-              "*TEMPERATURE\nBODY, 15.\n*PRINT, ENERGY\n*END STEP\n",
-              held[k].law, held[k].start, held[k].step);
+    JOB j = job_with(
+        "held", "tests/regression/mesh/square.geo",
+        "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+        "*ELASTIC\n1000., 0.\n*EXPANSION\n1.E-5\n%s"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+        "*INITIAL CONDITIONS, TYPE=DISPLACEMENT%s*STEP\n*%s\n0.5, 0.5\n"
+        "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\nTOP, 2, 2, -0.0015\n"
+        "*TEMPERATURE\nBODY, 15.\n*PRINT, ENERGY\n*END STEP\n",
+        held[k].law, held[k].start, held[k].step);
     const int code = job_run(&j, "");
     ck_assert_msg(code == 0, "%zu: exit %d: %s", k, code, j.errors);
-    dat e = job_table(&j, "ENERGY", -1);
+    DAT e = job_table(&j, "ENERGY", -1);
     ck_assert_double_eq_tol(dat_at(&e, 0, "thermal_work"),
                             held[k].stress * 1.5e-4, 1e-15);
     if (held[k].work > 0)
       ck_assert_double_eq_tol(dat_at(&e, 0, "inelastic_work"), held[k].work,
                               1e-15);
     ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-12);
-    dat_free(&e);
-    job_end(&j);
   }
 }
-END_TEST
 
-UNIT_MAIN("start", works_count_from_the_stress_of_the_start,
-          compatible_start_goes_on, start_remembers_where_the_foot_is,
-          given_force_goes_on, walls_of_a_corner_have_gaps_of_their_own,
-          incompatible_start_is_refused_with_its_defect,
-          incompatible_start_is_relaxed, start_without_load_is_relaxed_to_rest,
-          end_of_a_run_is_a_start, end_of_a_long_run_is_a_start,
-          wrong_files_are_refused)
+UNIT_MAIN("start")

@@ -2,7 +2,6 @@
  * STIFFNESS= of *SOLVER: the condensed matrix by its entries (DENSE) or by
  * products and solves (FACTOR) gives the same answers; AUTO takes the cheaper.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -40,14 +39,14 @@ static double apart(const dat *a, const dat *b, const char *name,
   return *size > 0 ? worst / *size : worst;
 }
 
-START_TEST(both_kinds_give_the_same_forces) {
-  job a = job_begin("dense"), b = job_begin("factor");
+TESTS(both_kinds_give_the_same_forces, DECKS) {
+  JOB a = job_begin("dense"), b = job_begin("factor");
   const char *deck = decks[_i].deck, *words = decks[_i].words;
   double force = 0, u = 0;
   int changes = 0;
   ck_assert_int_eq(job_run_with(&a, deck, DENSE, 0, words), 0);
   ck_assert_int_eq(job_run_with(&b, deck, FACTOR, 0, words), 0);
-  dat t = job_table(&a, "CONTACT", -1), s = job_table(&b, "CONTACT", -1);
+  DAT t = job_table(&a, "CONTACT", -1), s = job_table(&b, "CONTACT", -1);
   ck_assert_int_eq(t.n_row, s.n_row);
   ck_assert_double_le(apart(&t, &s, "f_n", &force), 1e-9);
   ck_assert_double_le(apart(&t, &s, "u_n", &u), 1e-9);
@@ -64,15 +63,9 @@ START_TEST(both_kinds_give_the_same_forces) {
     ck_assert_double_le(job_told(&b, "iterations"),
                         job_told(&a, "iterations") + 2);
   }
-  char *listing = job_file(&b, "lst");
+  FREED char *listing = job_file(&b, "lst");
   ck_assert_ptr_nonnull(strstr(listing, "FACTOR  STIFFNESS of *SOLVER"));
-  free(listing);
-  dat_free(&t);
-  dat_free(&s);
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
 /* ---- every METHOD that works by products ----------------------------------
  */
@@ -84,51 +77,41 @@ enum { METHODS = sizeof methods / sizeof *methods, FIVE = 5, BOTH = 2 };
 
 /* By the same deck, STIFFNESS=FACTOR; the forces of t to the tolerance. */
 static void method_agrees(int of, const char *method, const dat *t) {
-  char card[100];
   double force = 0;
-  job j = job_begin("method");
-  snprintf(card, sizeof card,
-           "*SOLVER, METHOD=%s, STIFFNESS=FACTOR, TOL=1E-11\n", method);
+  JOB j = job_begin("method");
+  PRINTED(card, "*SOLVER, METHOD=%s, STIFFNESS=FACTOR, TOL=1E-11\n", method);
   ck_assert_int_eq(job_run_with(&j, decks[of].deck, card, 0, decks[of].words),
                    0);
-  dat s = job_table(&j, "CONTACT", -1);
+  DAT s = job_table(&j, "CONTACT", -1);
   ck_assert_int_eq(t->n_row, s.n_row);
   ck_assert_msg(apart(t, &s, "f_n", &force) <= 1e-9, "%s: f_n", method);
   const char *shear = dat_has(t, "f_t") ? "f_t" : "f_t1";
   ck_assert_msg(apart(t, &s, shear, &force) <= 1e-9, "%s: %s", method, shear);
-  dat_free(&s);
-  job_end(&j);
 }
 
-START_TEST(every_method_gives_the_forces_of_the_entries) {
-  job j = job_begin("dense");
+TESTS(every_method_gives_the_forces_of_the_entries, FIVE) {
+  JOB j = job_begin("dense");
   ck_assert_int_eq(job_run_with(&j, decks[_i].deck, DENSE, 0, decks[_i].words),
                    0);
-  dat t = job_table(&j, "CONTACT", -1);
+  DAT t = job_table(&j, "CONTACT", -1);
   for (int k = 0; k < METHODS - (_i >= BOTH); ++k)
     method_agrees(_i, methods[k], &t);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* No equilibrium: the words of NEWTON on the entries. */
-START_TEST(every_method_finds_no_equilibrium) {
+TEST(every_method_finds_no_equilibrium) {
   char card[100];
-  job a;
+  JOB a;
   const char *deck = "input/arch/arch", *thin = "-D H=0.1";
   ck_assert_int_eq(job_run_with(&a, deck, DENSE, 0, thin), 6);
   for (int k = 0; k < METHODS; ++k) {
-    job b;
+    JOB b;
     snprintf(card, sizeof card, "*SOLVER, METHOD=%s, STIFFNESS=FACTOR\n",
              k == 0 ? "NEWTON" : methods[k]);
     ck_assert_int_eq(job_run_with(&b, deck, card, 0, thin), 6);
     ck_assert_msg(strcmp(a.errors, b.errors) == 0, "%s: %s", card, b.errors);
-    job_end(&b);
   }
-  job_end(&a);
 }
-END_TEST
 
 /* "--check" prints both rows; the kind it marks as taken. */
 static const char *taken(const job *j) {
@@ -143,24 +126,20 @@ static const char *taken(const job *j) {
 }
 
 static const char *choice(const char *cards, const char *words) {
-  char line[80];
-  job j = job_begin("choice");
+  JOB j = job_begin("choice");
   const char *deck = "input/greco/greco";
-  snprintf(line, sizeof line, "--check %s", words);
+  PRINTED(line, "--check %s", words);
   ck_assert_int_eq(job_run_with(&j, deck, cards, 0, line), 0);
-  const char *kind = taken(&j);
-  job_end(&j);
-  return kind;
+  return taken(&j);
 }
 
 /* Few contact nodes: DENSE, unless the deck says otherwise. */
-START_TEST(kind_is_chosen_by_cost) {
+TEST(kind_is_chosen_by_cost) {
   ck_assert_str_eq(choice("", "-D N=64"), "DENSE");
   ck_assert_str_eq(choice("*SOLVER, STIFFNESS=FACTOR\n", "-D N=64"), "FACTOR");
   ck_assert_str_eq(choice("*SOLVER, METHOD=SOR\n", "-D N=64"), "DENSE");
   ck_assert_str_eq(choice("*SOLVER, CHECK=YES\n", "-D N=64"), "DENSE");
 }
-END_TEST
 
 /* A strip of so many cells, all of whose lower side touches. */
 static job strip(int cells, const char *solver) {
@@ -186,41 +165,35 @@ static job strip(int cells, const char *solver) {
 }
 
 /* One that is dearer, where the other does not fit. */
-START_TEST(kind_is_chosen_by_memory) {
+TEST(kind_is_chosen_by_memory) {
   static const char *const kinds[] = {"DENSE", "FACTOR"};
   for (int k = 0; k < 2; ++k) {
-    job j = strip(60, k == 0 ? "STIFFNESS=AUTO" : "MAX_MEMORY=0.3");
+    JOB j = strip(60, k == 0 ? "STIFFNESS=AUTO" : "MAX_MEMORY=0.3");
     ck_assert_int_eq(job_run(&j, "--check"), 0);
     ck_assert_str_eq(taken(&j), kinds[k]);
     ck_assert((strstr(j.text, "needs more memory than there is") != NULL) ==
               (k == 1));
-    job_end(&j);
   }
 }
-END_TEST
 
 /* FACTOR, and the forces of DENSE. */
-START_TEST(contact_of_most_of_the_body_is_not_condensed) {
+TEST(contact_of_most_of_the_body_is_not_condensed) {
   static const char *const kinds[] = {"STIFFNESS=AUTO", "STIFFNESS=DENSE"};
   job j[2];
   for (int k = 0; k < 2; ++k) {
     j[k] = strip(300, kinds[k]);
     ck_assert_int_eq(job_run(&j[k], ""), 0);
-    char *listing = job_file(&j[k], "lst");
+    FREED char *listing = job_file(&j[k], "lst");
     ck_assert_ptr_nonnull(strstr(
         listing, k == 0 ? "FACTOR  it is expected" : "DENSE  STIFFNESS of"));
-    free(listing);
   }
-  dat a = job_table(&j[0], "CONTACT", 0), b = job_table(&j[1], "CONTACT", 0);
+  DAT a = job_table(&j[0], "CONTACT", 0), b = job_table(&j[1], "CONTACT", 0);
   double force = 0;
   ck_assert_int_eq(a.n_row, 301);
   ck_assert_double_le(apart(&a, &b, "f_n", &force), 1e-9);
   ck_assert_double_le(apart(&a, &b, "f_t", &force), 1e-9);
   for (int k = 0; k < 2; ++k) job_end(&j[k]);
-  dat_free(&a);
-  dat_free(&b);
 }
-END_TEST
 
 /* Unknowns, entries and solves of the last iteration, and words of its row. */
 static int last_system(const job *j, double system[3]) {
@@ -238,7 +211,7 @@ static int last_system(const job *j, double system[3]) {
   return words;
 }
 
-START_TEST(iterations_tell_their_linear_systems) {
+TEST(iterations_tell_their_linear_systems) {
   double dense[3], factor[3], free_unknowns = 0;
   job a = job_begin("dense"), b = job_begin("factor");
   const char *deck = "input/greco/greco", *words = "-D N=16 -D MU=0.6";
@@ -251,7 +224,7 @@ START_TEST(iterations_tell_their_linear_systems) {
   ck_assert_int_eq(job_run_with(&b, deck, FACTOR, 0, words), 0);
   ck_assert_int_eq(last_system(&a, dense), 12);
   ck_assert_int_eq(last_system(&b, factor), 12);
-  dat t = job_table(&a, "CONTACT", -1);
+  DAT t = job_table(&a, "CONTACT", -1);
   for (int i = 0; i < t.n_row; ++i) {
     const double is = dat_at(&t, i, "status");
     free_unknowns += is == 0 ? 2 : is == 1;
@@ -262,21 +235,18 @@ START_TEST(iterations_tell_their_linear_systems) {
   ck_assert_double_eq(dense[2], 1);
   ck_assert_double_eq(factor[0], job_told(&b, "unknowns"));
   ck_assert(factor[1] > 5 * factor[0] && factor[2] >= 1);
-  dat_free(&t);
   job_end(&a);
   job_end(&b);
 }
-END_TEST
 
 /* What --list solvers says of a method is what the check of a deck does. */
-START_TEST(list_says_which_methods_take_factors) {
+TEST(list_says_which_methods_take_factors) {
   static const char *const all[] = {"NEWTON", "LEMKE",  "SOR",      "PCG",
                                     "AUGLAG", "AITKEN", "LAGRANGE", "PROXIMAL"};
-  job j = job_begin("list");
+  JOB j = job_begin("list");
   ck_assert_int_eq(job_shell(&j, "protis --list solvers"), 0);
   for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
-    char name[40], card[100];
-    snprintf(name, sizeof name, "\n%s  (", all[i]);
+    PRINTED(name, "\n%s  (", all[i]);
     char *at = strstr(j.text, name), *end;
     ck_assert_ptr_nonnull(at);
     end = strstr(at, "\n\n");
@@ -285,29 +255,12 @@ START_TEST(list_says_which_methods_take_factors) {
         strstr(at, "works with STIFFNESS=DENSE and FACTOR") != NULL;
     ck_assert_int_ne(told, strstr(at, "needs the entries") != NULL);
     if (end != NULL) *end = '\n';
-    snprintf(card, sizeof card, "*SOLVER, METHOD=%s, STIFFNESS=FACTOR\n",
-             all[i]);
-    job deck = job_begin("deck");
+    PRINTED(card, "*SOLVER, METHOD=%s, STIFFNESS=FACTOR\n", all[i]);
+    JOB deck = job_begin("deck");
     ck_assert_int_eq(
         job_run_with(&deck, "input/greco/greco", card, 0, "--check -D N=4"),
         told ? 0 : 2);
-    job_end(&deck);
   }
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("stiffness");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, both_kinds_give_the_same_forces, 0, DECKS);
-  tcase_add_loop_test(tests, every_method_gives_the_forces_of_the_entries, 0,
-                      FIVE);
-  tcase_add_test(tests, every_method_finds_no_equilibrium);
-  tcase_add_test(tests, iterations_tell_their_linear_systems);
-  tcase_add_test(tests, list_says_which_methods_take_factors);
-  tcase_add_test(tests, kind_is_chosen_by_cost);
-  tcase_add_test(tests, kind_is_chosen_by_memory);
-  tcase_add_test(tests, contact_of_most_of_the_body_is_not_condensed);
-  return unit_run("stiffness", tests);
-}
+UNIT_MAIN("stiffness")

@@ -2,13 +2,10 @@
  * *ACCURACY, TARGET=: the error reached against a fine mesh, what stops the
  * passes, and what they tell.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
-
-#include <sys/resource.h>
 
 const int job_without_fields = 1;
 
@@ -41,16 +38,6 @@ static int press(job *j, int nc, const char *accuracy, const char *words) {
   return job_run(j, words);
 }
 
-/* Potential energy of one increment from rest: E - F'u, F'u twice the
- * trapezoidal work. */
-static double potential(const job *j, double *strain) {
-  dat e = job_table(j, "ENERGY", -1);
-  *strain = dat_at(&e, 0, "strain_energy");
-  double answer = *strain - 2.0 * dat_at(&e, 0, "external_work");
-  dat_free(&e);
-  return answer;
-}
-
 static int count(const char *text, const char *word) {
   int n = 0;
   for (const char *p = text; (p = strstr(p, word)) != NULL; ++p) ++n;
@@ -65,14 +52,6 @@ static double solver_is_changed(const char *lst) {
   ck_assert(sscanf(row, "%*d %*f %*f %*f %lf", &solver) == 1);
   ck_assert(by != NULL && sscanf(by, "mesh, tol * %lf", &factor) == 1);
   return solver * factor;
-}
-
-/* CPU seconds of jobs so far. */
-static double cpu_of_jobs(void) {
-  struct rusage r;
-  ck_assert_int_eq(getrusage(RUSAGE_CHILDREN, &r), 0);
-  return (double)(r.ru_utime.tv_sec + r.ru_stime.tv_sec) +
-         1e-6 * (double)(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
 }
 
 /* Passes take no more than the job; the forecast is that of a tenth of the
@@ -91,43 +70,37 @@ static void check_passes(const char *lst, double cpu) {
   ck_assert_double_eq_tol(total[1], 0.1 * total[0], 1e-3 * total[0]);
 }
 
-START_TEST(target_is_reached_in_truth) {
-  job coarse, fine, j;
+TEST(target_is_reached_in_truth) {
+  JOB coarse, fine, j;
   double strain, fine_strain;
   ck_assert_int_eq(press(&coarse, 8, "", ""), 0);
   ck_assert_int_eq(press(&fine, 16, "", ""), 0);
   /* The potential falls with the square of the size: its limit. */
-  double least = potential(&fine, &fine_strain);
-  least -= (potential(&coarse, &strain) - least) / 3;
-  double cpu = -cpu_of_jobs();
+  double least = job_potential(&fine, &fine_strain);
+  least -= (job_potential(&coarse, &strain) - least) / 3;
+  double cpu = -job_cpu();
   int code =
       press(&j, 4, "*SOLVER, METHOD=SOR, TOL=0.1\n*ACCURACY, TARGET=3 %\n", "");
-  cpu += cpu_of_jobs();
+  cpu += job_cpu();
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  double energy = potential(&j, &strain) - least;
+  double energy = job_potential(&j, &strain) - least;
   double is = 100 * sqrt(fmax(energy, 0) / fine_strain);
   ck_assert_msg(is > 0.3 && is < 3.0, "error %g %%", is);
-  char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
+  FREED char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
   ck_assert_ptr_nonnull(strstr(lst, "target 3 % of the energy norm: reached"));
   check_passes(lst, cpu);
   ck_assert_double_eq_tol(solver_is_changed(lst), 0.93 * 0.05 * 3, 0.01);
   ck_assert_ptr_nonnull(strstr(json, "\"reached\": true"));
   ck_assert_int_ge(count(json, "\"changed_next\""), 2);
   ck_assert_int_le(count(json, "\"changed_next\""), 4);
-  free(lst);
-  free(json);
-  job_end(&coarse);
-  job_end(&fine);
-  job_end(&j);
 }
-END_TEST
 
 /* Where the solver alone is to do better the mesh of the last pass stays. */
-START_TEST(tighter_solver_takes_over_the_mesh) {
-  job j;
-  int code = press(
-      &j, 2, "*SOLVER, METHOD=SOR, TOL=0.1\n*ACCURACY, TARGET=12 %\n", "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+TEST(tighter_solver_takes_over_the_mesh) {
+  JOB j;
+  CK_EXIT(press(&j, 2, "*SOLVER, METHOD=SOR, TOL=0.1\n*ACCURACY, TARGET=12 %\n",
+                ""),
+          0, j);
   const char *row = strstr(j.text, "  mesh\n   2 "), *end = NULL;
   double unknowns[2];
   ck_assert_msg(row != NULL && strstr(row, "  tol * ") != NULL, "%s", j.text);
@@ -136,34 +109,27 @@ START_TEST(tighter_solver_takes_over_the_mesh) {
   ck_assert(sscanf(strstr(end, "\n   3 "), " 3 %lf", &unknowns[1]) == 1);
   ck_assert_double_gt(unknowns[0], 500);
   ck_assert_double_eq(unknowns[0], unknowns[1]);
-  job_end(&j);
 }
-END_TEST
 
 /* Errors within their shares whose sum is above the target: the mesh gets what
  * the others leave, in a second pass if there may be one. */
-START_TEST(mesh_has_what_the_solver_leaves) {
+TEST(mesh_has_what_the_solver_leaves) {
   double total = 0.0, of_solver = 0.0;
   for (int k = 0; k < 3; ++k) {
-    char cards[120];
-    job j;
-    snprintf(cards, sizeof cards,
-             "*SOLVER, METHOD=SOR, TOL=3E-3\n"
-             "*ACCURACY, TARGET=%.9g %%, MAX_PASSES=%d\n",
-             k == 0 ? 90.0 : total - 0.5 * of_solver, k == 1 ? 2 : 1);
-    const int code = press(&j, 2, cards, "");
-    ck_assert_msg(code == (k == 2), "exit %d: %s", code, j.errors);
+    JOB j;
+    PRINTED(cards,
+            "*SOLVER, METHOD=SOR, TOL=3E-3\n"
+            "*ACCURACY, TARGET=%.9g %%, MAX_PASSES=%d\n",
+            k == 0 ? 90.0 : total - 0.5 * of_solver, k == 1 ? 2 : 1);
+    CK_EXIT(press(&j, 2, cards, ""), (k == 2), j);
     ck_assert_int_eq(strstr(j.errors, "MAX_PASSES is reached") != NULL, k == 2);
-    char *json = job_file(&j, "json");
+    FREED char *json = job_file(&j, "json");
     const char *at = strstr(json, "\"passes\"");
     total = atof(strstr(at, "total_error_percent\": ") + 22);
     of_solver = atof(strstr(at, "solver_error_percent\": ") + 23);
     ck_assert_int_eq(count(json, "\"changed_next\""), 1 + (k == 1));
-    free(json);
-    job_end(&j);
   }
 }
-END_TEST
 
 #define CUBE_SIDE \
   "(-3.1245736543072164E-6*cosh(K*z) + 3.4326728826486094E-6*z*sinh(K*z))"
@@ -181,80 +147,68 @@ static const char cube_field[] =
  * deflection is -z/(lambda + 2 G) + (A sinh kz + B z cosh kz) cos cos. */
 static int press_cube(job *j, int n, const char *cards, const char *accuracy,
                       const char *words) {
-  *j = job_begin("cube");
-  job_copy(j, "tests/regression/mesh/cube.geo");
-  job_write(j, "cube.inp",
-            "*PARAMETER\nN = %d\n*MESH, FILE=cube.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s*STEP\n*STATIC\n"
-            "*BOUNDARY\nLEFT, 1\nRIGHT, 1\nFRONT, 2\nBACK, 2\n*DSLOAD\n"
-            "TOP, P, \"1 + 0.5*cos(pi*x)*cos(pi*y)\"\n%s*PRINT, GOALS\n"
-            "*END STEP\n",
-            n, cards, accuracy);
+  *j = job_with("cube", "tests/regression/mesh/cube.geo",
+                "*PARAMETER\nN = %d\n*MESH, FILE=cube.geo\n"
+                "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+                "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+                "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s*STEP\n*STATIC\n"
+                "*BOUNDARY\nLEFT, 1\nRIGHT, 1\nFRONT, 2\nBACK, 2\n*DSLOAD\n"
+                "TOP, P, \"1 + 0.5*cos(pi*x)*cos(pi*y)\"\n%s*PRINT, GOALS\n"
+                "*END STEP\n",
+                n, cards, accuracy);
   return job_run(j, words);
 }
 
 /* Its estimate is 7.6 %, 0.6 of the error, and more on the next mesh. */
-START_TEST(estimate_of_a_coarse_mesh_counts_twice) {
-  job j;
-  const int code = press_cube(&j, 1, cube_field, "*ACCURACY, TARGET=12\n", "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+TEST(estimate_of_a_coarse_mesh_counts_twice) {
+  JOB j;
+  CK_EXIT(press_cube(&j, 1, cube_field, "*ACCURACY, TARGET=12\n", ""), 0, j);
   ck_assert_double_le(job_told(&j, "true_error_percent"), 12.0);
-  job_end(&j);
 }
-END_TEST
 
 /* Half of the work of the pressure. */
-START_TEST(goal_of_a_coarse_mesh_is_not_reliable) {
+TEST(goal_of_a_coarse_mesh_is_not_reliable) {
   const double k = M_PI * sqrt(2.0);
   const double top = -2.0060926166508162e-5 * sinh(k) +
                      1.5250963782598403e-5 * cosh(k),
                exact = 0.5 * (0.74285714285714286e-3 - top / 8.0);
-  job j;
+  JOB j;
   const int code =
       press_cube(&j, 4, "*GOAL, NAME=E, QUANTITY=ENERGY\n", "", "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat t = job_table(&j, "GOALS", -1);
-  char *json = job_file(&j, "json");
+  DAT t = job_table(&j, "GOALS", -1);
+  FREED char *json = job_file(&j, "json");
   ck_assert_ptr_nonnull(strstr(json, "\"verdict\": \"coarse_mesh\""));
   ck_assert_double_le(
       fabs(exact - dat_at(&t, 0, "value") - dat_at(&t, 0, "error")),
       dat_at(&t, 0, "band"));
-  free(json);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* Exit 1, why, and the files of the last pass. */
 static void must_miss(int nc, const char *accuracy, const char *why) {
-  job j;
+  JOB j;
   double strain;
   int code = press(&j, nc, accuracy, "");
   ck_assert_msg(code == 1, "%s: exit %d: %s", accuracy, code, j.errors);
   ck_assert_msg(strstr(j.errors, why) != NULL, "%s: %s", accuracy, j.errors);
-  ck_assert_double_lt(potential(&j, &strain), 0);
-  char *lst = job_file(&j, "lst");
+  ck_assert_double_lt(job_potential(&j, &strain), 0);
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "missed"));
   ck_assert_ptr_nonnull(strstr(lst, "exit 1"));
-  free(lst);
-  job_end(&j);
 }
 
-START_TEST(limits_stop_with_the_best_there_is) {
+TEST(limits_stop_with_the_best_there_is) {
   must_miss(4, "*ACCURACY, TARGET=0.5, MAX_PASSES=1\n",
             "MAX_PASSES is reached");
   must_miss(4, "*ACCURACY, TARGET=0.1, MAX_CPU=0.5\n", "MAX_CPU is 0.5");
   must_miss(4, "*ACCURACY, TARGET=0.1, MAX_MEMORY=20\n", "MAX_MEMORY is 20");
 }
-END_TEST
 
 /* Two tips that a pass cannot resolve at once have most of the error: the mesh
  * in the end has few elements more. A limit that is exceeded says at once what
  * is within it. */
-START_TEST(limits_are_those_of_the_mesh_in_the_end) {
+TEST(limits_are_those_of_the_mesh_in_the_end) {
   static const char card[] = "*ACCURACY, TARGET=%g, MAX_MEMORY=%g\n";
   static const char deck[] = "input/crack/partly_closed";
   char text[80];
@@ -273,7 +227,6 @@ START_TEST(limits_are_those_of_the_mesh_in_the_end) {
   ck_assert(within > 4.0 && within < 8.0);
   job_end(&j);
 }
-END_TEST
 
 static const char square_deck[] =
     "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
@@ -288,7 +241,7 @@ static const char square_msh[] =
         "4 2 2 3 1 1 3 4\n");
 
 /* Transfinite curves and surfaces are set free, and sizes within limits. */
-START_TEST(structured_geometry_is_made_finer) {
+TEST(structured_geometry_is_made_finer) {
   static const char *const fixed[] = {
       "Transfinite Curve{1:4}=4;Transfinite Surface{1};",
       "Mesh.MeshSizeMin=0.3;Mesh.MeshSizeMax=0.3;", "Mesh.MeshSizeFactor=9;"};
@@ -299,7 +252,7 @@ START_TEST(structured_geometry_is_made_finer) {
       "Physical Surface(\"BODY\")={1};\n"
       "Physical Curve(\"BOTTOM\")={1};Physical Curve(\"TOP\")={3};\n";
   for (size_t k = 0; k < sizeof fixed / sizeof *fixed; ++k) {
-    job j = job_begin("square");
+    JOB j = job_begin("square");
     job_write(&j, "square.geo", geo, fixed[k]);
     job_write(&j, "square.inp", "*MESH, FILE=square.geo\n%s", square_deck);
     int code = job_shell(&j, "mkdir t && TMPDIR=t protis square && rmdir t");
@@ -312,11 +265,10 @@ START_TEST(structured_geometry_is_made_finer) {
     job_end(&j);
   }
 }
-END_TEST
 
 /* gmsh fails with the first sizes of the second pass, not with others. */
-START_TEST(sizes_that_gmsh_fails_with_are_made_smaller) {
-  job j = job_begin("square");
+TEST(sizes_that_gmsh_fails_with_are_made_smaller) {
+  JOB j = job_begin("square");
   job_write(&j, "square.geo",
             "If (FileExists(\"once\") && !FileExists(\"twice\"))\n"
             "Printf(\"2\") > \"twice\"; Exit;\nEndIf\n"
@@ -327,25 +279,21 @@ START_TEST(sizes_that_gmsh_fails_with_are_made_smaller) {
             "Physical Surface(\"BODY\")={1};\n"
             "Physical Curve(\"BOTTOM\")={1};Physical Curve(\"TOP\")={3};\n");
   job_write(&j, "square.inp", "*MESH, FILE=square.geo\n%s", square_deck);
-  int code = job_shell(&j, "protis square && test -e twice");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_shell(&j, "protis square && test -e twice"), 0, j);
   ck_assert_ptr_null(strstr(j.errors, "P3003"));
-  job_end(&j);
 }
-END_TEST
 
 /* A .msh is refined, also for --estimate-cost. Messages are those of the last
  * pass, as in the listing: the obstacle is nearest between the first nodes. */
-START_TEST(mesh_without_geometry_is_refined) {
-  job j = job_begin("square");
+TEST(mesh_without_geometry_is_refined) {
+  JOB j = job_begin("square");
   job_write(&j, "square.msh", "%s", square_msh);
   job_write(
       &j, "square.inp",
       "*MESH, FILE=square.msh\n*OBSTACLE, NAME=O, TYPE=GAP\n"
       "\"0.5 + (x - 0.5)^2\"\n*CONTACT, NAME=C, GROUP=TOP, OBSTACLE=O\n%s",
       square_deck);
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   ck_assert_double_gt(job_told(&j, "unknowns"), 20.0);
   char *lst = job_file(&j, "lst"), *told = strstr(lst, "P4021: ");
   ck_assert_ptr_nonnull(told);
@@ -354,14 +302,12 @@ START_TEST(mesh_without_geometry_is_refined) {
   free(lst);
   ck_assert_int_eq(job_run(&j, "--estimate-cost"), 0);
   ck_assert_ptr_nonnull(strstr(j.text, "unknowns"));
-  job_end(&j);
 }
-END_TEST
 
 /* A square on an inclined floor: the third mesh has 3.0 % of error, the fourth,
  * of other places, 3.2; the fifth reaches the target. */
-START_TEST(pass_in_vain_is_followed_by_another) {
-  job j = job_begin("square");
+TEST(pass_in_vain_is_followed_by_another) {
+  JOB j = job_begin("square");
   job_write(&j, "square.msh", "%s", square_msh);
   job_write(&j, "square.inp",
             "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
@@ -370,15 +316,12 @@ START_TEST(pass_in_vain_is_followed_by_another) {
             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n*STEP\n*STATIC\n"
             "*BOUNDARY\nTOP, 1, 1, 0.002\nTOP, 2, 2, -0.005\n"
             "*ACCURACY, TARGET=3\n*END STEP\n");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  job_end(&j);
+  CK_EXIT(job_run(&j, ""), 0, j);
 }
-END_TEST
 
 /* A shaft of radius 1 in a bush, in four straight pieces to the quarter: nodes
  * that refining adds lie on the circle, on both bodies. */
-START_TEST(surfaces_of_a_pair_are_refined_as_they_are_round) {
+TEST(surfaces_of_a_pair_are_refined_as_they_are_round) {
   static const double radius[] = {0.5, 1.0, 1.0, 2.0};
   static const char *const side[] = {"SHAFT", "BUSH"};
   char nodes[2000] = "", cells[2000] = "";
@@ -402,7 +345,7 @@ START_TEST(surfaces_of_a_pair_are_refined_as_they_are_round) {
                v + 6, no + 2, v, v + 6, v + 1);
     if (k % 5 < 4) no += 2;
   }
-  job j = job_begin("ring");
+  JOB j = job_begin("ring");
   job_write(&j, "ring.msh",
             MSH("7\n1 1 \"BORE\"\n1 2 \"SHAFT\"\n1 3 \"BUSH\"\n1 4 "
                 "\"RIM\"\n1 5 \"SX\"\n1 6 \"SY\"\n2 7 \"BODY\"\n",
@@ -415,27 +358,23 @@ START_TEST(surfaces_of_a_pair_are_refined_as_they_are_round) {
             "*BOUNDARY\nSX, 2, 2\nSY, 1, 1\n*DSLOAD\nRIM, P, 10.\n"
             "*ACCURACY, TARGET=15\n*PRINT, NODES, GROUP=SHAFT\n"
             "*PRINT, NODES, GROUP=BUSH\n*END STEP\n");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   for (int i = 0; i < 2; ++i) {
-    dat t = job_table(&j, "NODES", i);
+    DAT t = job_table(&j, "NODES", i);
     ck_assert_msg(t.n_row > 8, "%s has %d nodes", side[i], t.n_row);
     for (int k = 0; k < t.n_row; ++k)
       ck_assert_double_eq_tol(hypot(dat_at(&t, k, "x"), dat_at(&t, k, "y")), 1,
                               1e-12);
-    dat_free(&t);
   }
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(values_at_nodes_keep_the_mesh) {
+TEST(values_at_nodes_keep_the_mesh) {
   static const char msh[] =
       MSH("3\n1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n",
           "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n",
           "4\n1 1 2 1 1 1 2\n2 1 2 2 3 3 4\n3 2 2 3 1 1 2 3\n"
           "4 2 2 3 1 1 3 4\n");
-  job j = job_begin("square");
+  JOB j = job_begin("square");
   job_write(&j, "square.msh", "%s", msh);
   job_write(&j, "heat.msh",
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n1\n\"T\"\n"
@@ -452,9 +391,7 @@ START_TEST(values_at_nodes_keep_the_mesh) {
   ck_assert_int_eq(job_run(&j, "--estimate-cost"), 2);
   ck_assert_msg(strstr(j.errors, "values at its nodes") != NULL, "%s",
                 j.errors);
-  job_end(&j);
 }
-END_TEST
 
 /* Unknowns and memory, MB, that --estimate-cost foresees for an error in %. */
 static void forecast_row(const job *j, double level, double *unknowns,
@@ -509,7 +446,7 @@ static double forecast_doubt(const job *j, double level) {
 }
 
 /* The forecast of an error against the passes that reach it. */
-START_TEST(forecast_is_near_the_truth) {
+TEST(forecast_is_near_the_truth) {
   job j;
   double unknowns, memory;
   ck_assert_int_eq(press(&j, 4, "", "--estimate-cost"), 0);
@@ -530,11 +467,10 @@ START_TEST(forecast_is_near_the_truth) {
   ck_assert_double_gt(memory, 0);
   job_end(&j);
 }
-END_TEST
 
 /* Errors of coarse meshes count twice in the forecast too, which was a sixth of
  * the unknowns. A factor of 2 was 4: none is told. */
-START_TEST(forecast_of_a_coarse_mesh) {
+TEST(forecast_of_a_coarse_mesh) {
   job j;
   double unknowns, memory;
   ck_assert_int_eq(press_cube(&j, 3, "", "", "--estimate-cost"), 0);
@@ -551,12 +487,11 @@ START_TEST(forecast_of_a_coarse_mesh) {
                 has);
   job_end(&j);
 }
-END_TEST
 
 /* Two triangles have 8 % of error, finer meshes 10.7 and 15.4 %. */
-START_TEST(forecast_is_of_meshes_whose_error_falls) {
+TEST(forecast_is_of_meshes_whose_error_falls) {
   double unknowns, memory;
-  job j = job_begin("square");
+  JOB j = job_begin("square");
   job_write(&j, "square.msh", "%s", square_msh);
   for (int k = 0; k < 2; ++k) {
     job_write(&j, "square.inp",
@@ -567,21 +502,18 @@ START_TEST(forecast_is_of_meshes_whose_error_falls) {
               "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
               "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.006\n%s*END STEP\n",
               k == 0 ? "" : "*ACCURACY, TARGET=3\n");
-    const int code = job_run(&j, k == 0 ? "--estimate-cost" : "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    CK_EXIT(job_run(&j, k == 0 ? "--estimate-cost" : ""), 0, j);
     if (k == 0) forecast_row(&j, 3, &unknowns, &memory);
   }
   const double has = job_unknowns(&j);
   ck_assert_msg(unknowns > has / 2 && unknowns < has * 2, "%g %g", unknowns,
                 has);
-  job_end(&j);
 }
-END_TEST
 
 /* Half of the foot is held: the stress there has no bound, and the order of the
  * error is that of three meshes. */
-START_TEST(order_at_a_sharp_edge_is_that_of_three_meshes) {
-  job j = job_begin("edge");
+TEST(order_at_a_sharp_edge_is_that_of_three_meshes) {
+  JOB j = job_begin("edge");
   job_write(&j, "edge.geo",
             "h = 0.3; Point(1)={0,0,0,h};Point(2)={1,0,0,h};Point(3)={1,1,0,h};"
             "Point(4)={0,1,0,h};Point(5)={0.5,0,0,h};\nLine(1)={1,5};"
@@ -590,47 +522,39 @@ START_TEST(order_at_a_sharp_edge_is_that_of_three_meshes) {
             "Physical Surface(\"BODY\")={1};Physical Curve(\"BOTTOM\")={1};\n"
             "Physical Curve(\"TOP\")={4};\n");
   job_write(&j, "edge.inp", "*MESH, FILE=edge.geo\n%s", square_deck);
-  int code = job_run(&j, "--estimate-cost");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, "--estimate-cost"), 0, j);
   ck_order(&j);
-  job_end(&j);
 }
-END_TEST
 
 /* The block that creeps in increments of 1. */
 static job creep(int n, const char *accuracy) {
-  job j = job_begin("creep");
-  job_copy(&j, "input/creep_block/creep_block.geo");
-  job_write(&j, "creep.inp",
-            "*PARAMETER\nN = %d\n*MESH, FILE=creep_block.geo\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
-            "*INELASTIC, LAW=MAXWELL\n4.\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n"
-            "*VISCO, INTEGRATOR=EULER\n1., 4.\n*BOUNDARY\nSYMMETRY, 1\n"
-            "*DSLOAD\nTOP, P, 50.\nLEFT, P, 150.\n"
-            "*ACCURACY, %s\n*END STEP\n",
-            n, accuracy);
+  job j = job_with("creep", "input/creep_block/creep_block.geo",
+                   "*PARAMETER\nN = %d\n*MESH, FILE=creep_block.geo\n"
+                   "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+                   "*INELASTIC, LAW=MAXWELL\n4.\n"
+                   "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                   "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+                   "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+                   "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n"
+                   "*VISCO, INTEGRATOR=EULER\n1., 4.\n*BOUNDARY\nSYMMETRY, 1\n"
+                   "*DSLOAD\nTOP, P, 50.\nLEFT, P, 150.\n"
+                   "*ACCURACY, %s\n*END STEP\n",
+                   n, accuracy);
   return j;
 }
 
 /* The error of the increments of *VISCO counts too. */
-START_TEST(flow_has_its_share_of_the_target) {
-  job j = creep(8, "TARGET=50");
+TEST(flow_has_its_share_of_the_target) {
+  JOB j = creep(8, "TARGET=50");
   ck_assert_int_eq(job_run(&j, ""), 0);
-  char *lst = job_file(&j, "lst");
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "error of the steps: about "));
-  free(lst);
-  job_end(&j);
 }
-END_TEST
 
 /* A sixteenth of the increments cost sixteen times the seconds, but for the
  * mesh of the pass. */
-START_TEST(seconds_of_shorter_increments_count) {
-  job j = creep(32, "TARGET=4, MAX_CPU=0.001");
+TEST(seconds_of_shorter_increments_count) {
+  JOB j = creep(32, "TARGET=4, MAX_CPU=0.001");
   ck_assert_int_eq(job_run(&j, ""), 1);
   const char *at = strstr(j.errors, "done after about ");
   ck_assert_msg(at != NULL, "%s", j.errors);
@@ -642,45 +566,37 @@ START_TEST(seconds_of_shorter_increments_count) {
   ck_assert_msg(end > cpu + 8 * rest, "%g s after %g s with %g", end, cpu,
                 rest);
   free(json);
-  job_end(&j);
 }
-END_TEST
 
 /* A rough cylinder in increments of 0.5, for an error in %. */
 static job roll(int nc, const char *total, const char *accuracy) {
-  job j = job_begin("cylinder");
-  job_copy(&j, "input/hertz_line/hertz_line.geo");
-  job_write(&j, "cylinder.inp",
-            "*PARAMETER\nR = 10.\nA = 0.2348908547\nNC = %d\n"
-            "*MESH, FILE=hertz_line.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
-            "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
-            "0.5, %s\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\n"
-            "TOP, P, 50.\n*ACCURACY, %s\n*PRINT, ENERGY\n*END STEP\n",
-            nc, total, accuracy);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j =
+      job_with("cylinder", "input/hertz_line/hertz_line.geo",
+               "*PARAMETER\nR = 10.\nA = 0.2348908547\nNC = %d\n"
+               "*MESH, FILE=hertz_line.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+               "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+               "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+               "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+               "0.5, %s\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\n"
+               "TOP, P, 50.\n*ACCURACY, %s\n*PRINT, ENERGY\n*END STEP\n",
+               nc, total, accuracy);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
 /* In two increments: they must become shorter. */
-START_TEST(increments_are_made_shorter) {
-  job j = roll(12, "1.", "TARGET=3");
-  char *json = job_file(&j, "json"), *sta = job_file(&j, "sta");
+TEST(increments_are_made_shorter) {
+  JOB j = roll(12, "1.", "TARGET=3");
+  FREED char *json = job_file(&j, "json"), *sta = job_file(&j, "sta");
   ck_assert_ptr_nonnull(strstr(json, "dt * "));
   ck_assert_int_gt(count(sta, " OK"), 2);
-  free(json);
-  free(sta);
-  job_end(&j);
 }
-END_TEST
 
 /* Increments chosen in the step: the least of them goes with the others, so
  * that the second is no longer than the first. */
-START_TEST(least_increment_is_made_shorter_too) {
-  job j = roll(4, "1., 0.5", "TARGET=5, TIME=BALANCED");
+TEST(least_increment_is_made_shorter_too) {
+  JOB j = roll(4, "1., 0.5", "TARGET=5, TIME=BALANCED");
   char *sta = job_file(&j, "sta"), *at = strchr(sta, '\n');
   double dt[2] = {0.0, 0.0};
   for (int k = 0; k < 2; ++k, at = strchr(at + 1, '\n'))
@@ -688,27 +604,24 @@ START_TEST(least_increment_is_made_shorter_too) {
   ck_assert_double_lt(dt[0], 0.3);
   ck_assert_double_le(dt[1], 1.01 * dt[0]);
   free(sta);
-  job_end(&j);
 }
-END_TEST
 
 /* The block of greco without friction or with it, under these cards. */
 static int block(job *j, double mu, const char *cards, const char *words) {
-  *j = job_begin("block");
-  job_copy(j, "input/greco/greco.geo");
-  job_write(j, "block.inp",
-            "*PARAMETER\nN = 8\n*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
-            "0.25, 1.\n*BOUNDARY\nSYMMETRY, 1\n%s*END STEP\n",
-            mu, cards);
+  *j =
+      job_with("block", "input/greco/greco.geo",
+               "*PARAMETER\nN = 8\n*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+               "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+               "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
+               "0.25, 1.\n*BOUNDARY\nSYMMETRY, 1\n%s*END STEP\n",
+               mu, cards);
   return job_run(j, words);
 }
 
 /* Without a load, lifted off, pressed evenly: P1 has the solution. */
-START_TEST(exact_solution_costs_one_pass_and_no_forecast) {
+TEST(exact_solution_costs_one_pass_and_no_forecast) {
   static const struct {
     double mu;
     const char *cards;
@@ -716,15 +629,13 @@ START_TEST(exact_solution_costs_one_pass_and_no_forecast) {
                {0.5, "TOP, 2, 2, 0.01\n*DSLOAD\nLEFT, P, 50.\n"},
                {0.0, "*DSLOAD\nTOP, P, 50.\n"}};
   for (int i = 0; i < 3; ++i) {
-    char cards[120];
     job j;
-    snprintf(cards, sizeof cards, "%s*ACCURACY, TARGET=0.01\n", exact[i].cards);
+    PRINTED(cards, "%s*ACCURACY, TARGET=0.01\n", exact[i].cards);
     int code = block(&j, exact[i].mu, cards, "");
     ck_assert_msg(code == 0, "%d: exit %d: %s", i, code, j.errors);
-    char *lst = job_file(&j, "lst");
+    FREED char *lst = job_file(&j, "lst");
     ck_assert_ptr_null(strstr(lst, "NaN"));
     ck_assert_ptr_null(strstr(lst, "next digit"));
-    free(lst);
     job_end(&j);
     code = block(&j, exact[i].mu, exact[i].cards, "--estimate-cost");
     ck_assert_msg(code == 0, "%d: exit %d: %s", i, code, j.errors);
@@ -732,68 +643,43 @@ START_TEST(exact_solution_costs_one_pass_and_no_forecast) {
     job_end(&j);
   }
 }
-END_TEST
 
 /* The lines of the passes cannot be printed, or nobody reads them. */
-START_TEST(lines_of_the_passes_must_leave) {
-  job j;
+TEST(lines_of_the_passes_must_leave) {
+  JOB j;
   ck_assert_int_eq(block(&j, 0.5, "*ACCURACY, TARGET=0.01\n", "--check"), 0);
   ck_assert_int_eq(job_shell(&j, "protis block > /dev/full"), 4);
   ck_assert_ptr_nonnull(strstr(j.errors, "cannot write: No space left"));
   ck_assert_ptr_null(job_contradiction(&j, 4));
   job_shell(&j, "{ protis block; echo exit $? >&2; } | true");
   ck_assert_ptr_nonnull(strstr(j.errors, "exit 0\n"));
-  job_end(&j);
 }
-END_TEST
 
 /* Increments that follow rounding would have no end. */
-START_TEST(exact_solution_needs_no_shorter_increments) {
-  job j;
-  int code = block(&j, 0.5,
-                   "TOP, 2, 2, 0.01\n*DSLOAD\nLEFT, P, 50.\n"
-                   "*SOLVER, TOL=BALANCED\n*ACCURACY, TIME=BALANCED\n",
-                   "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  char *sta = job_file(&j, "sta");
+TEST(exact_solution_needs_no_shorter_increments) {
+  JOB j;
+  CK_EXIT(block(&j, 0.5,
+                "TOP, 2, 2, 0.01\n*DSLOAD\nLEFT, P, 50.\n"
+                "*SOLVER, TOL=BALANCED\n*ACCURACY, TIME=BALANCED\n",
+                ""),
+          0, j);
+  FREED char *sta = job_file(&j, "sta");
   ck_assert_int_eq(count(sta, "CUT"), 0);
   ck_assert_int_le(count(sta, " OK"), 4);
-  free(sta);
-  job_end(&j);
 }
-END_TEST
 
 /* Loads that return to zero, to rounding, leave errors of that size. */
-START_TEST(unloaded_body_has_no_large_error) {
-  job j;
-  int code = block(&j, 0.5,
-                   "*DSLOAD\nTOP, P, \"50*sin(pi*t)\"\n"
-                   "LEFT, P, \"150*sin(pi*t)\"\n"
-                   "*ACCURACY, MESH=YES, TIME=YES\n",
-                   "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+TEST(unloaded_body_has_no_large_error) {
+  JOB j;
+  CK_EXIT(block(&j, 0.5,
+                "*DSLOAD\nTOP, P, \"50*sin(pi*t)\"\n"
+                "LEFT, P, \"150*sin(pi*t)\"\n"
+                "*ACCURACY, MESH=YES, TIME=YES\n",
+                ""),
+          0, j);
   ck_assert_double_lt(job_told(&j, "mesh_error_worst_percent"), 10);
   ck_assert_double_lt(job_told(&j, "time_error_worst_percent"), 1);
   ck_assert_double_lt(job_told(&j, "solver_error_worst_percent"), 1e-6);
-  job_end(&j);
 }
-END_TEST
 
-UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
-          goal_of_a_coarse_mesh_is_not_reliable, forecast_of_a_coarse_mesh,
-          forecast_is_of_meshes_whose_error_falls, target_is_reached_in_truth,
-          mesh_has_what_the_solver_leaves, tighter_solver_takes_over_the_mesh,
-          limits_stop_with_the_best_there_is,
-          limits_are_those_of_the_mesh_in_the_end,
-          sizes_that_gmsh_fails_with_are_made_smaller,
-          structured_geometry_is_made_finer, mesh_without_geometry_is_refined,
-          pass_in_vain_is_followed_by_another,
-          surfaces_of_a_pair_are_refined_as_they_are_round,
-          values_at_nodes_keep_the_mesh, forecast_is_near_the_truth,
-          increments_are_made_shorter, least_increment_is_made_shorter_too,
-          order_at_a_sharp_edge_is_that_of_three_meshes,
-          flow_has_its_share_of_the_target, seconds_of_shorter_increments_count,
-          exact_solution_costs_one_pass_and_no_forecast,
-          lines_of_the_passes_must_leave,
-          exact_solution_needs_no_shorter_increments,
-          unloaded_body_has_no_large_error)
+UNIT_MAIN("target")

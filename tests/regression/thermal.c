@@ -9,10 +9,6 @@
 #include "support/unit.h"
 
 #include <hdf5.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct scene {
   const char *geo, *numbers; /* mesh and lines for *PARAMETER                */
@@ -23,8 +19,7 @@ typedef struct scene {
 
 static job run_scene(const scene *s) {
   job j = job_begin("thermal");
-  char path[128];
-  snprintf(path, sizeof path, "tests/regression/mesh/%s", s->geo);
+  PRINTED(path, "tests/regression/mesh/%s", s->geo);
   job_copy(&j, path);
   job_write(&j, "thermal.inp",
             "*PARAMETER\n%s\n*MESH, FILE=%s\n*MATERIAL, NAME=M\n"
@@ -32,8 +27,7 @@ static job run_scene(const scene *s) {
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n%s%s",
             s->numbers, s->geo, s->nu, s->expansion, s->section, s->model,
             s->steps);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
   return j;
 }
 
@@ -51,21 +45,19 @@ static job run_scene(const scene *s) {
 /* Every element of the last table has that value, to 1e-10 of the scale. */
 static void all_equal(const job *j, const char *column, double expected,
                       double scale) {
-  dat d = job_table(j, "ELEMENTS", -1);
+  DAT d = job_table(j, "ELEMENTS", -1);
   for (int i = 0; i < d.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&d, i, column), expected, 1e-10 * scale);
-  dat_free(&d);
 }
 
 static void balanced(const job *j) {
-  dat e = job_table(j, "ENERGY", -1);
-  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
-  dat_free(&e);
+  ck_assert_double_le(
+      fabs(job_value(j, "ENERGY", -1, "energy_defect_relative")), 1e-10);
 }
 
 /* The forces of a body that expands freely on a floor are the rounding of those
  * of its heat: they lift nothing. */
-START_TEST(heat_alone_lifts_no_body) {
+TESTS(heat_alone_lifts_no_body, 2) {
   static const char *const size[] = {"N = 3", "N = 4"};
   scene s = {"square.geo",
              size[_i],
@@ -75,46 +67,39 @@ START_TEST(heat_alone_lifts_no_body) {
              FLOOR,
              "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nLEFT, 1\n" HEAT(
                  100.) "*PRINT, ELEMENTS\n*END STEP\n"};
-  job j = run_scene(&s);
+  JOB j = run_scene(&s);
   all_equal(&j, "strain_yy", 1.2e-3, 1.2e-3);
   all_equal(&j, "stress_yy", 0, 240);
-  job_end(&j);
 }
-END_TEST
 
 /* A free bar reaches a wall at the end of an increment: there the force is the
  * rounding of the gap, and later E (alpha dT - gap / length) by its height. */
-START_TEST(gap_closed_by_heat_at_an_increment) {
+TESTS(gap_closed_by_heat_at_an_increment, 3) {
   const double length[] = {1, 2, 5}, alpha[] = {1e-5, 1e-5, 2e-5};
   for (int n = 1; n <= 4; n *= 2) {
     const double gap = alpha[_i] * 125 * length[_i];
-    job j = job_begin("wall");
-    job_copy(&j, "tests/regression/mesh/square.geo");
-    job_write(&j, "wall.inp",
-              "*PARAMETER\nN = %d\nLX = %g\nKIND = 1\n"
-              "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
-              "1000., 0.\n*EXPANSION\n%g\n"
-              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
-              "*OBSTACLE, NAME=O, TYPE=PLANE\n%.12g, 0.\n-1., 0.\n"
-              "*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n*STEP\n"
-              "*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
-              "*TEMPERATURE\nBODY, \"500*t\"\n*PRINT, TOTALS\n*END STEP\n",
-              n, length[_i], alpha[_i], length[_i] + gap);
+    JOB j =
+        job_with("wall", "tests/regression/mesh/square.geo",
+                 "*PARAMETER\nN = %d\nLX = %g\nKIND = 1\n"
+                 "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+                 "1000., 0.\n*EXPANSION\n%g\n"
+                 "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+                 "*OBSTACLE, NAME=O, TYPE=PLANE\n%.12g, 0.\n-1., 0.\n"
+                 "*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n*STEP\n"
+                 "*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
+                 "*TEMPERATURE\nBODY, \"500*t\"\n*PRINT, TOTALS\n*END STEP\n",
+                 n, length[_i], alpha[_i], length[_i] + gap);
     int code = job_run(&j, "");
     ck_assert_msg(code == 0, "N = %d: exit %d: %s", n, code, j.errors);
     for (int k = 0; k < 4; ++k) {
-      dat t = job_table(&j, "TOTALS", k);
-      ck_assert_double_eq_tol(fabs(dat_at(&t, 0, "force_x")),
+      ck_assert_double_eq_tol(fabs(job_value(&j, "TOTALS", k, "force_x")),
                               1000 * alpha[_i] * 125 * k, 1e-9);
-      dat_free(&t);
     }
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A bar between contacts carries -E alpha dT; the force is its height. */
-START_TEST(bar_between_contacts) {
+TEST(bar_between_contacts) {
   scene s = {"square.geo",
              "N = 4",
              0.3,
@@ -122,22 +107,19 @@ START_TEST(bar_between_contacts) {
              "CPS3",
              FLOOR CEILING,
              STEP("*BOUNDARY\nLEFT, 1\n" HEAT(100.))};
-  job j = run_scene(&s);
+  JOB j = run_scene(&s);
   all_equal(&j, "stress_yy", -240.0, 240.0);
   all_equal(&j, "stress_xx", 0.0, 240.0);
   /* e_xx = alpha dT (1 + nu); e_zz the same. */
   all_equal(&j, "strain_xx", 1.56e-3, 1e-3);
   all_equal(&j, "strain_zz", 1.56e-3, 1e-3);
-  dat t = job_table(&j, "TOTALS", -1);
+  DAT t = job_table(&j, "TOTALS", -1);
   for (int i = 0; i < 2; ++i)
     ck_assert_double_eq_tol(dat_at(&t, i, "normal"), 240.0, 1e-8);
-  dat_free(&t);
   balanced(&j);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(held_on_all_sides) {
+TEST(held_on_all_sides) {
   scene s = {"square.geo",
              "N = 4",
              0.3,
@@ -145,33 +127,28 @@ START_TEST(held_on_all_sides) {
              "CPS3",
              FLOOR CEILING,
              STEP("*BOUNDARY\nLEFT, 1\nRIGHT, 1\n" HEAT(100.))};
-  job biaxial = run_scene(&s);
+  JOB biaxial = run_scene(&s);
   all_equal(&biaxial, "stress_xx", -240.0 / 0.7, 240.0);
   all_equal(&biaxial, "stress_yy", -240.0 / 0.7, 240.0);
   balanced(&biaxial);
-  job_end(&biaxial);
   s.section = "CPE3";
-  job confined = run_scene(&s);
+  JOB confined = run_scene(&s);
   all_equal(&confined, "stress_xx", -600.0, 600.0);
   all_equal(&confined, "stress_yy", -600.0, 600.0);
   all_equal(&confined, "stress_zz", -600.0, 600.0);
   balanced(&confined);
-  job_end(&confined);
   /* Its reactions where no stress is shown: of a quarter of a side. */
   s.steps = "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nRIGHT, 1\n" HEAT(
       100.) "*PRINT, REACTIONS\n*OUTPUT, HDF5=NO\n"
             "*ACCURACY, MESH=NO, SOLVER=NO\n*END STEP\n";
-  job alone = run_scene(&s);
-  dat d = job_table(&alone, "REACTIONS", -1);
-  ck_assert_double_eq_tol(dat_max(&d, "reaction_x"), 150.0, 1e-9);
-  dat_free(&d);
-  job_end(&alone);
+  JOB alone = run_scene(&s);
+  ck_assert_double_eq_tol(job_max(&alone, "REACTIONS", -1, "reaction_x"), 150.0,
+                          1e-9);
 }
-END_TEST
 
 /* Nothing holds it back: strain without stress, also with one coefficient for
  * each axis and in a turned body. */
-START_TEST(free_expansion_has_no_stress) {
+TEST(free_expansion_has_no_stress) {
   scene s = {"square.geo",
              "N = 4",
              0.3,
@@ -180,26 +157,23 @@ START_TEST(free_expansion_has_no_stress) {
              "CPS3",
              "",
              STEP("*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n" HEAT(100.))};
-  job j = run_scene(&s);
+  JOB j = run_scene(&s);
   static const char *const strain[] = {"strain_xx", "strain_yy", "strain_zz"};
   for (int c = 0; c < 3; ++c) {
     all_equal(&j, strain[c], 1e-3 * (c + 1), 1e-3);
     all_equal(&j, c == 0 ? "stress_xx" : "stress_yy", 0.0, 200.0);
   }
-  job_end(&j);
   s.expansion = ALPHA;
   s.section = "CAX3";
   s.steps = STEP("*BOUNDARY\nBOTTOM, 2\n" HEAT(100.));
-  job axi = run_scene(&s);
+  JOB axi = run_scene(&s);
   all_equal(&axi, "strain_tt", 1.2e-3, 1e-3);
   all_equal(&axi, "stress_tt", 0.0, 240.0);
-  job_end(&axi);
 }
-END_TEST
 
 /* The secants are counted from ZERO; the body has no strain at its initial
  * temperature: 2e-5 (120 - 20) - 1.5e-5 (70 - 20). */
-START_TEST(secants_over_the_temperature) {
+TEST(secants_over_the_temperature) {
   scene s = {"square.geo",
              "N = 2",
              0.0,
@@ -210,49 +184,40 @@ START_TEST(secants_over_the_temperature) {
              "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
              "*TEMPERATURE\nBODY, 120.\n*PRINT, ELEMENTS\n*END STEP\n"
              "*STEP\n*STATIC\n*TEMPERATURE, OP=NEW\n*END STEP\n"};
-  job j = run_scene(&s);
-  dat hot = job_table(&j, "ELEMENTS", 0), back = job_table(&j, "ELEMENTS", 1);
+  JOB j = run_scene(&s);
+  DAT hot = job_table(&j, "ELEMENTS", 0), back = job_table(&j, "ELEMENTS", 1);
   ck_assert_double_eq_tol(dat_at(&hot, 0, "strain_yy"), 1.25e-3, 1e-15);
   ck_assert_double_eq_tol(dat_at(&hot, 0, "temperature"), 120.0, 1e-12);
   ck_assert_double_eq_tol(dat_at(&back, 0, "strain_yy"), 0.0, 1e-15);
   ck_assert_double_eq_tol(dat_at(&back, 0, "temperature"), 70.0, 1e-12);
-  dat_free(&hot);
-  dat_free(&back);
-  job_end(&j);
 }
-END_TEST
 
 /* Temperatures that are never the same: each element counts from its own, also
  * where the first elements do not expand. All of HARD gains 50 degrees. */
-START_TEST(each_element_counts_from_its_own_temperature) {
-  job j = job_begin("thermal");
-  job_copy(&j, "tests/regression/mesh/layers.geo");
-  job_write(&j, "thermal.inp",
-            "*PARAMETER\nN = 4\n*MESH, FILE=layers.geo\n*MATERIAL, NAME=COLD\n"
-            "*ELASTIC\n2.E5, 0.\n*MATERIAL, NAME=M\n*ELASTIC\n2.E5, 0.\n"
-            "*EXPANSION, TYPE=ORTHO\n0., 1.2E-5, 0.\n"
-            "*SOLID SECTION, ELSET=SOFT, MATERIAL=COLD\n"
-            "*SOLID SECTION, ELSET=HARD, MATERIAL=M\n"
-            "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
-            "SOFT, \"300*x\"\nHARD, \"100*x + 70*y\"\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n*TEMPERATURE\n"
-            "SOFT, 7.\nHARD, \"50 + 100*x + 70*y\"\n*PRINT, ELEMENTS\n"
-            "*END STEP\n");
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+TEST(each_element_counts_from_its_own_temperature) {
+  JOB j = job_with(
+      "thermal", "tests/regression/mesh/layers.geo",
+      "*PARAMETER\nN = 4\n*MESH, FILE=layers.geo\n*MATERIAL, NAME=COLD\n"
+      "*ELASTIC\n2.E5, 0.\n*MATERIAL, NAME=M\n*ELASTIC\n2.E5, 0.\n"
+      "*EXPANSION, TYPE=ORTHO\n0., 1.2E-5, 0.\n"
+      "*SOLID SECTION, ELSET=SOFT, MATERIAL=COLD\n"
+      "*SOLID SECTION, ELSET=HARD, MATERIAL=M\n"
+      "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
+      "SOFT, \"300*x\"\nHARD, \"100*x + 70*y\"\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n*TEMPERATURE\n"
+      "SOFT, 7.\nHARD, \"50 + 100*x + 70*y\"\n*PRINT, ELEMENTS\n"
+      "*END STEP\n");
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
   all_equal(&j, "stress_yy", 0.0, 240.0);
-  dat d = job_table(&j, "ELEMENTS", -1);
+  DAT d = job_table(&j, "ELEMENTS", -1);
   for (int i = 0; i < d.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&d, i, "strain_yy"),
                             dat_at(&d, i, "y") > 0.5 ? 6e-4 : 0.0, 1e-14);
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* From 10 to 30 in a step of 1 by default, then with an amplitude to 60 and
  * back, kept in the step that says nothing. */
-START_TEST(temperatures_run_through_the_steps) {
+TEST(temperatures_run_through_the_steps) {
   scene s = {"square.geo",
              "N = 2",
              0.0,
@@ -268,25 +233,20 @@ START_TEST(temperatures_run_through_the_steps) {
              "*STEP\n*QUASISTATIC\n0.5, 1.\n*TEMPERATURE\nBODY, 20.\n"
              "*END STEP\n"};
   static const double expected[] = {20, 30, 45, 60, 60, 40, 20};
-  job j = run_scene(&s);
+  JOB j = run_scene(&s);
   for (int k = 0; k < 7; ++k) {
-    dat d = job_table(&j, "ELEMENTS", k);
+    DAT d = job_table(&j, "ELEMENTS", k);
     ck_assert_double_eq_tol(dat_at(&d, 0, "temperature"), expected[k], 1e-11);
     ck_assert_double_eq_tol(dat_at(&d, 0, "strain_xx"),
                             1.2e-5 * (expected[k] - 10.0), 1e-14);
-    dat_free(&d);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* Mean of a column over the last table of the elements of a group: the tables
  * of the groups follow each other, "back" of them from the end. */
 static double group_mean(const job *j, const char *column, int back) {
-  dat d = job_table(j, "ELEMENTS", 2 - back);
-  double mean = dat_sum(&d, column) / d.n_row;
-  dat_free(&d);
-  return mean;
+  DAT d = job_table(j, "ELEMENTS", 2 - back);
+  return dat_sum(&d, column) / d.n_row;
 }
 
 #define THREE_PLACES                                                \
@@ -295,7 +255,7 @@ static double group_mean(const job *j, const char *column, int back) {
 
 /* Radii 1 and 2, 100 degrees inside, none outside, plane strain (Timoshenko,
  * Goodier 1970, article 151). */
-START_TEST(cylinder_with_a_logarithmic_profile) {
+TEST(cylinder_with_a_logarithmic_profile) {
   scene s = {"strips.geo",
              "N = 201\nX0 = 1\nLY = 1/201",
              0.3,
@@ -304,7 +264,7 @@ START_TEST(cylinder_with_a_logarithmic_profile) {
              "",
              "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nTOP, 2\n"
              "*TEMPERATURE\nBODY, \"100*log(2/x)/log(2)\"\n" THREE_PLACES};
-  job j = run_scene(&s);
+  JOB j = run_scene(&s);
   const double scale = 209.82370728;
   ck_assert_double_eq_tol(group_mean(&j, "stress_tt", 2), -209.82370728,
                           0.01 * scale);
@@ -314,14 +274,12 @@ START_TEST(cylinder_with_a_logarithmic_profile) {
                           0.002 * scale);
   ck_assert_double_eq_tol(group_mean(&j, "stress_tt", 0), 133.03343558,
                           0.01 * scale);
-  job_end(&j);
 }
-END_TEST
 
 /* Half of a free strip of height 2, temperature 100 (1 - x^2) across: the
  * stress along it is 240 (x^2 - 1/3), tension at the cold surface: +160, -80.
  * Its far end is free: five heights away. */
-START_TEST(strip_with_a_parabolic_profile) {
+TEST(strip_with_a_parabolic_profile) {
   scene s = {"strips.geo",
              "N = 101\nM = 60\nLY = 5",
              0.3,
@@ -332,8 +290,8 @@ START_TEST(strip_with_a_parabolic_profile) {
              "*TEMPERATURE\nBODY, \"100*(1 - x^2)\"\n"
              "*PRINT, ELEMENTS, GROUP=FIRST\n*PRINT, ELEMENTS, GROUP=LAST\n"
              "*END STEP\n"};
-  job j = run_scene(&s);
-  dat centre = job_table(&j, "ELEMENTS", 0), top = job_table(&j, "ELEMENTS", 1);
+  JOB j = run_scene(&s);
+  DAT centre = job_table(&j, "ELEMENTS", 0), top = job_table(&j, "ELEMENTS", 1);
   double at_centre = 0.0, at_surface = 0.0;
   for (int i = 0; i < centre.n_row; ++i)
     at_centre = fmin(at_centre, dat_at(&centre, i, "stress_yy"));
@@ -341,69 +299,56 @@ START_TEST(strip_with_a_parabolic_profile) {
     at_surface = fmax(at_surface, dat_at(&top, i, "stress_yy"));
   ck_assert_double_eq_tol(at_centre, -80.0, 0.02 * 160.0);
   ck_assert_double_eq_tol(at_surface, 160.0, 0.02 * 160.0);
-  dat_free(&centre);
-  dat_free(&top);
-  job_end(&j);
 }
-END_TEST
 
 /* Block of height 1 under a fixed top, "gap" above the floor, heated by dT:
  * -E (alpha dT - gap) where that is positive. */
 static void closing(double gap, const char *heat, double expected) {
-  char model[256], steps[256];
-  snprintf(model, sizeof model,
-           "*OBSTACLE, NAME=O, TYPE=PLANE\n0., %.17g\n0., 1.\n"
-           "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n",
-           -gap);
-  snprintf(steps, sizeof steps,
-           "*STEP\n*STATIC\n*BOUNDARY\nTOP, 2\nLEFT, 1\n%s"
-           "*PRINT, ELEMENTS, CONTACT, ENERGY\n*END STEP\n",
-           heat);
+  PRINTED(model,
+          "*OBSTACLE, NAME=O, TYPE=PLANE\n0., %.17g\n0., 1.\n"
+          "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n",
+          -gap);
+  PRINTED(steps,
+          "*STEP\n*STATIC\n*BOUNDARY\nTOP, 2\nLEFT, 1\n%s"
+          "*PRINT, ELEMENTS, CONTACT, ENERGY\n*END STEP\n",
+          heat);
   scene s = {"square.geo", "N = 4", 0.0, ALPHA, "CPE3", model, steps};
-  job j = run_scene(&s);
+  JOB j = run_scene(&s);
   /* Held by the plane strain too, zz does not matter: nu = 0. */
   all_equal(&j, "stress_yy", expected, 240.0);
-  dat c = job_table(&j, "CONTACT", -1);
+  DAT c = job_table(&j, "CONTACT", -1);
   ck_assert_double_eq_tol(dat_sum(&c, "f_n"), -expected, 1e-7);
   for (int i = 0; i < c.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 0.0, 1e-13);
-  dat_free(&c);
-  job_end(&j);
 }
 
 /* Temperature x in plane strain: u = (1 + nu) alpha (x^2 - y^2, 2 x y)/2 has no
  * stress in the plane. Without compressibility the pressures must not take the
  * differences within a cluster for strain. */
-START_TEST(linear_temperature_leaves_averaged_bodies_free) {
+TESTS(linear_temperature_leaves_averaged_bodies_free, 4) {
   static const double nu[] = {0.3, 0.45, 0.499, 0.4999};
-  char steps[240];
-  snprintf(steps, sizeof steps,
-           STEP("*BOUNDARY\nBOTTOM, 2\n"
-                "LEFT, 1, 1, \"-0.6E-5*(1 + %g)*y^2\"\n"
-                "*TEMPERATURE\nBODY, \"x\"\n"),
-           nu[_i]);
+  PRINTED(steps,
+          STEP("*BOUNDARY\nBOTTOM, 2\n"
+               "LEFT, 1, 1, \"-0.6E-5*(1 + %g)*y^2\"\n"
+               "*TEMPERATURE\nBODY, \"x\"\n"),
+          nu[_i]);
   scene s = {"square.geo", "N = 8", nu[_i], ALPHA, "CPE3, FORMULATION=AVERAGED",
              "",           steps};
-  job j = run_scene(&s);
-  dat d = job_table(&j, "ELEMENTS", -1);
+  JOB j = run_scene(&s);
+  DAT d = job_table(&j, "ELEMENTS", -1);
   for (int i = 0; i < d.n_row; ++i) { /* of E alpha, an eighth each element */
     ck_assert_double_eq_tol(dat_at(&d, i, "stress_xx"), 0, 0.1 * 2.4);
     ck_assert_double_eq_tol(dat_at(&d, i, "stress_yy"), 0, 0.1 * 2.4);
   }
-  dat_free(&d);
   balanced(&j);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(heat_closes_the_gap) {
+TEST(heat_closes_the_gap) {
   closing(1e-3, HEAT(100.), -40.0);
   closing(1e-3, "*TEMPERATURE\nBODY, \"1e-3/1.2e-5\"\n", 0.0);
 }
-END_TEST
 
-START_TEST(penetration_at_the_start) { closing(-1e-4, "", -20.0); }
-END_TEST
+TEST(penetration_at_the_start) { closing(-1e-4, "", -20.0); }
 
 enum { N_NODE = 9 };
 
@@ -465,15 +410,14 @@ static void write_hdf5_field(const char *path) {
 /* Temperatures of a file, half of them in half the step; elements have the
  * mean of their nodes: 1 2 5 make the first, 2 3 6 the third. Copies that a
  * crack makes, the last time, have those of their nodes. */
-START_TEST(temperatures_from_a_file) {
+TEST(temperatures_from_a_file) {
   static const char *const name[] = {"t.msh", "b.msh", "t.h5", "t.msh"};
   static void (*const write[])(const char *) = {
       write_text_field, write_binary_field, write_hdf5_field, write_text_field};
   for (int k = 0; k < 4; ++k) {
-    char path[128];
-    job j = job_begin("field");
+    JOB j = job_begin("field");
     job_copy(&j, "tests/regression/bad/square.msh");
-    snprintf(path, sizeof path, "%s/%s", j.dir, name[k]);
+    PRINTED(path, "%s/%s", j.dir, name[k]);
     write[k](path);
     job_write(&j, "field.inp",
               "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n"
@@ -497,24 +441,20 @@ START_TEST(temperatures_from_a_file) {
       ck_assert_double_eq_tol(found, part[i / 2] * mean[i % 2], 1e-11);
       dat_free(&d);
     }
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A field that is cut, or has a node twice, is no field. */
-START_TEST(damaged_fields_are_refused) {
-  job j = job_begin("field");
-  job_copy(&j, "tests/regression/bad/square.msh");
-  job_write(&j, "field.inp",
-            "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n"
-            "*EXPANSION\n1.E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n"
-            "*TEMPERATURE, FILE=t.msh\nBODY\n*END STEP\n");
+TEST(damaged_fields_are_refused) {
+  JOB j =
+      job_with("field", "tests/regression/bad/square.msh",
+               "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n"
+               "*EXPANSION\n1.E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n"
+               "*TEMPERATURE, FILE=t.msh\nBODY\n*END STEP\n");
   static void (*const write[])(const char *) = {write_text_field,
                                                 write_binary_field};
-  char path[128];
-  snprintf(path, sizeof path, "%s/t.msh", j.dir);
+  PRINTED(path, "%s/t.msh", j.dir);
   for (int k = 0; k < 2; ++k) {
     write[k](path);
     char text[1024];
@@ -554,19 +494,15 @@ START_TEST(damaged_fields_are_refused) {
     ck_assert_msg(strstr(j.errors, cases[i].message) != NULL, "%s", j.errors);
   }
   for (int n = N_NODE - 1; n <= N_NODE + 1; n += 2) {
-    char message[80];
-    snprintf(message, sizeof message, "/node_no has %d items, /temperature %d",
-             N_NODE, n);
+    PRINTED(message, "/node_no has %d items, /temperature %d", N_NODE, n);
     write_temperatures(path, n);
     ck_assert_int_eq(job_run(&j, "--check"), 2);
     ck_assert_msg(strstr(j.errors, message) != NULL, "%s", j.errors);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* Without *TEMPERATURE nothing of it is done or held. */
-START_TEST(costs_nothing_when_not_called) {
+TEST(costs_nothing_when_not_called) {
   scene s = {"square.geo",
              "N = 2",
              0.3,
@@ -574,64 +510,35 @@ START_TEST(costs_nothing_when_not_called) {
              "CPE3",
              "",
              STEP("*BOUNDARY\nLEFT, 1, 2\n*DSLOAD\nRIGHT, TX, 1.\n")};
-  job j = run_scene(&s);
-  char *lst = job_file(&j, "lst");
+  JOB j = run_scene(&s);
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "thermal strain"));
   ck_assert_ptr_nonnull(strstr(lst, "no *TEMPERATURE card"));
-  const char *stage = strstr(lst, "\n  thermal strains ");
-  ck_assert_ptr_nonnull(stage);
-  ck_assert_int_eq(atoi(stage + 19), 0);
-  free(lst);
-  job_end(&j);
+  const char *line = strstr(lst, "\n  thermal strains ");
+  ck_assert_ptr_nonnull(line);
+  ck_assert_int_eq(atoi(line + 19), 0);
 }
-END_TEST
 
 /* Without a load a block that shrinks leaves its floor about its middle, with
  * friction or without. */
-START_TEST(shrinking_block_keeps_its_place) {
-  job j = job_begin("shrinks");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "shrinks.inp",
-            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n"
-            "*EXPANSION\n0.001\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
-            "*AMPLITUDE, NAME=W, TIME=TOTAL TIME\n0., 0., 1., 1., 2., 3.\n"
-            "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n"
-            "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nLEFT, 1\n"
-            "*DSLOAD\nTOP, P, 0.1, A\n*TEMPERATURE\nBODY, -1., W\n"
-            "*PRINT, CONTACT\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*END STEP\n",
-            _i ? "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n" : "");
+TESTS(shrinking_block_keeps_its_place, 2) {
+  JOB j =
+      job_with("shrinks", "tests/regression/mesh/square.geo",
+               "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n"
+               "*EXPANSION\n0.001\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+               "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
+               "*AMPLITUDE, NAME=W, TIME=TOTAL TIME\n0., 0., 1., 1., 2., 3.\n"
+               "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n"
+               "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nLEFT, 1\n"
+               "*DSLOAD\nTOP, P, 0.1, A\n*TEMPERATURE\nBODY, -1., W\n"
+               "*PRINT, CONTACT\n*END STEP\n"
+               "*STEP\n*QUASISTATIC\n0.5, 1.\n*END STEP\n",
+               _i ? "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n" : "");
   ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
-  dat c = job_table(&j, "CONTACT", -1);
+  DAT c = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < c.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 1.44e-3, 2e-6);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("thermal");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_test(tests, bar_between_contacts);
-  tcase_add_test(tests, held_on_all_sides);
-  tcase_add_test(tests, free_expansion_has_no_stress);
-  tcase_add_loop_test(tests, heat_alone_lifts_no_body, 0, 2);
-  tcase_add_loop_test(tests, gap_closed_by_heat_at_an_increment, 0, 3);
-  tcase_add_test(tests, secants_over_the_temperature);
-  tcase_add_test(tests, each_element_counts_from_its_own_temperature);
-  tcase_add_test(tests, temperatures_run_through_the_steps);
-  tcase_add_test(tests, cylinder_with_a_logarithmic_profile);
-  tcase_add_test(tests, strip_with_a_parabolic_profile);
-  tcase_add_test(tests, temperatures_from_a_file);
-  tcase_add_test(tests, damaged_fields_are_refused);
-  tcase_add_test(tests, heat_closes_the_gap);
-  tcase_add_loop_test(tests, shrinking_block_keeps_its_place, 0, 2);
-  tcase_add_test(tests, penetration_at_the_start);
-  tcase_add_test(tests, costs_nothing_when_not_called);
-  tcase_add_loop_test(tests, linear_temperature_leaves_averaged_bodies_free, 0,
-                      4);
-  return unit_run("thermal", tests);
-}
+UNIT_MAIN("thermal")

@@ -2,7 +2,6 @@
  * Thresholds and verdicts tried on both sides closely: what is just below is
  * taken, what is just above is refused.
  */
-#include "base/base.h"
 #include "support/tips.h"
 #include "support/unit.h"
 
@@ -22,29 +21,28 @@ static void check_run(job *j, int code, const char *word) {
  * one by (x, y); the tips carry the loads. */
 static void start_from(double x, double y, double pull, double push, int code,
                        const char *word) {
-  char cards[1200];
-  snprintf(cards, sizeof cards,
-           "*AMPLITUDE, NAME=ON\n0., 1., 1., 1.\n"
-           "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0., -0.001\n0., 1.\n"
-           "*OBSTACLE, NAME=WALL, TYPE=PLANE\n0.002, 0.\n-1., 0.\n"
-           "*CONTACT, NAME=FLOOR, GROUP=FOOT1, OBSTACLE=FLOOR, "
-           "NORMAL=OBSTACLE\n"
-           "*CONTACT, NAME=WALL, GROUP=SIDE1, OBSTACLE=WALL, NORMAL=OBSTACLE\n"
-           "*CONTACT, NAME=OTHER, GROUP=FOOT2, OBSTACLE=FLOOR, "
-           "NORMAL=OBSTACLE\n"
-           "*FRICTION, CONTACT=OTHER, LAW=COULOMB\n0.3\n"
-           "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n"
-           "BODY, 1, %.17g\nBODY, 2, %.17g\n*STEP\n*QUASISTATIC\n1., 1.\n"
-           "*BOUNDARY\nCLAMPED, 1, 1, %.17g, ON\nCLAMPED, 2, 2, %.17g, ON\n"
-           "*CLOAD\nTIPS, 1, %.17g, ON\nTIPS, 2, %.17g, ON\n*END STEP\n",
-           x, y, x, y, pull, -push);
+  PRINTED(cards,
+          "*AMPLITUDE, NAME=ON\n0., 1., 1., 1.\n"
+          "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0., -0.001\n0., 1.\n"
+          "*OBSTACLE, NAME=WALL, TYPE=PLANE\n0.002, 0.\n-1., 0.\n"
+          "*CONTACT, NAME=FLOOR, GROUP=FOOT1, OBSTACLE=FLOOR, "
+          "NORMAL=OBSTACLE\n"
+          "*CONTACT, NAME=WALL, GROUP=SIDE1, OBSTACLE=WALL, NORMAL=OBSTACLE\n"
+          "*CONTACT, NAME=OTHER, GROUP=FOOT2, OBSTACLE=FLOOR, "
+          "NORMAL=OBSTACLE\n"
+          "*FRICTION, CONTACT=OTHER, LAW=COULOMB\n0.3\n"
+          "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n"
+          "BODY, 1, %.17g\nBODY, 2, %.17g\n*STEP\n*QUASISTATIC\n1., 1.\n"
+          "*BOUNDARY\nCLAMPED, 1, 1, %.17g, ON\nCLAMPED, 2, 2, %.17g, ON\n"
+          "*CLOAD\nTIPS, 1, %.17g, ON\nTIPS, 2, %.17g, ON\n*END STEP\n",
+          x, y, x, y, pull, -push);
   job j = tips_new(G, "", cards);
   check_run(&j, code, word);
 }
 
 /* In parts of the largest force, 10: of the limit of friction, of the wall,
  * which cannot pull, of the floor, and of what is driven into them. */
-START_TEST(start_is_compatible_to_a_millionth) {
+TEST(start_is_compatible_to_a_millionth) {
   static const struct {
     double x, y, pull, push;
   } cases[] = {{2e-3, -1e-3, 3, 10}, {2e-3, -1e-3, 0, 10}};
@@ -61,7 +59,6 @@ START_TEST(start_is_compatible_to_a_millionth) {
                below ? NULL : "unilateral condition");
   }
 }
-END_TEST
 
 /* ---- is it the end of a run on this mesh? -------------------------------- */
 
@@ -74,26 +71,22 @@ END_TEST
 static void end_of_other(const char *scale, int code) {
   char cards[900];
   snprintf(cards, sizeof cards, LOADED, "", "");
-  job first = tips_new(G, "", cards);
+  JOB first = tips_new(G, "", cards);
   ck_assert_int_eq(job_run(&first, ""), 0);
   snprintf(cards, sizeof cards, LOADED,
            "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, FILE=end.h5\n", "+0*t");
   job j = tips_new(G, scale, cards);
-  char command[300];
-  snprintf(command, sizeof command, "cp %s/tips.h5 %s/end.h5", first.dir,
-           j.dir);
+  PRINTED(command, "cp %s/tips.h5 %s/end.h5", first.dir, j.dir);
   ck_assert_int_eq(system(command), 0);
-  job_end(&first);
   check_run(&j, code, code == 0 ? NULL : "has another mesh");
 }
 
-START_TEST(end_of_a_run_is_of_the_same_mesh) {
+TEST(end_of_a_run_is_of_the_same_mesh) {
   end_of_other("", 0);
   end_of_other(", SCALE=1.0000000001", 0);
   end_of_other(", SCALE=1.00000001", 2);
   end_of_other(", SCALE=1.05", 2);
 }
-END_TEST
 
 /* ---- is an increment short enough? ----------------------------------------
  */
@@ -116,28 +109,24 @@ static double told_error(const char *integrator, double z) {
 
 /* Lengths of the first increments that are taken, from the largest strain. */
 static void taken(const char *integrator, double tolerance, double dt[2]) {
-  char cards[600];
-  snprintf(cards, sizeof cards,
-           "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1E-9, 1E-9\n*BOUNDARY\n"
-           "CLAMPED, 1, 2\nTIPS, 2, 2, \"-0.01 + 0*t\"\nTIPS, 1\n*END STEP\n"
-           "*STEP\n*VISCO, INTEGRATOR=%s, TOLERANCE=%.17g\n0.1, 1., 1E-3\n"
-           "*PRINT, ENERGY\n*END STEP\n",
-           integrator, tolerance);
-  job j = tips_new(G, "", cards);
+  PRINTED(cards,
+          "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1E-9, 1E-9\n*BOUNDARY\n"
+          "CLAMPED, 1, 2\nTIPS, 2, 2, \"-0.01 + 0*t\"\nTIPS, 1\n*END STEP\n"
+          "*STEP\n*VISCO, INTEGRATOR=%s, TOLERANCE=%.17g\n0.1, 1., 1E-3\n"
+          "*PRINT, ENERGY\n*END STEP\n",
+          integrator, tolerance);
+  JOB j = tips_new(G, "", cards);
   tips_material(&j, "*INELASTIC, LAW=MAXWELL\n1.\n");
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   double before = 1e-9;
   for (int k = 0; k < 2; ++k) {
-    dat e = job_table(&j, "ENERGY", k);
+    DAT e = job_table(&j, "ENERGY", k);
     dt[k] = dat_at(&e, 0, "time") - before;
     before += dt[k];
-    dat_free(&e);
   }
-  job_end(&j);
 }
 
-START_TEST(increment_is_taken_up_to_its_tolerance) {
+TEST(increment_is_taken_up_to_its_tolerance) {
   static const char *const rows[] = {"EULER", "HEUN", "BACKWARD", "MIDPOINT"};
   for (int i = 0; i < 4; ++i) {
     const double error = told_error(rows[i], 0.1);
@@ -148,16 +137,12 @@ START_TEST(increment_is_taken_up_to_its_tolerance) {
     ck_assert_double_le(dt[0], 0.05 + 1e-8);
   }
 }
-END_TEST
 
 /* An error of half the tolerance: the next increment is 0.9 sqrt(2) as long. */
-START_TEST(next_increment_follows_the_error) {
+TEST(next_increment_follows_the_error) {
   double dt[2];
   taken("HEUN", 2 * told_error("HEUN", 0.1), dt);
   ck_assert_double_eq_tol(dt[1], 0.1 * 0.9 * sqrt(2), 1e-6);
 }
-END_TEST
 
-UNIT_MAIN("thresholds", increment_is_taken_up_to_its_tolerance,
-          next_increment_follows_the_error, start_is_compatible_to_a_millionth,
-          end_of_a_run_is_of_the_same_mesh)
+UNIT_MAIN("thresholds")

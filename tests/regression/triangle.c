@@ -4,7 +4,6 @@
  * friction. K = area [(lambda + G) g g' + G |g|^2 I], g = grad of the P1
  * function of the free vertex.
  */
-#include "base/base.h"
 #include "solver/solver.h"
 #include "support/job.h"
 #include "support/traced.h"
@@ -84,7 +83,7 @@ static int solution(double mu, const double F[2], int which, double u[2],
 
 /* Number of the solution that the run found, or -1. */
 static int found_solution(const job *j, double mu, const double F[2]) {
-  dat n = job_table(j, "NODES", -1), c = job_table(j, "CONTACT", -1);
+  DAT n = job_table(j, "NODES", -1), c = job_table(j, "CONTACT", -1);
   ck_assert_int_eq(c.n_row, 1);
   int tip = dat_row_near(&n, "y", 0.0), found = -1;
   for (int k = 0; k < 4; ++k) {
@@ -96,14 +95,12 @@ static int found_solution(const job *j, double mu, const double F[2]) {
                    fabs(dat_at(&c, 0, "f_y") - r[1]);
     if (error < 1e-9) found = k;
   }
-  dat_free(&n);
-  dat_free(&c);
   return found;
 }
 
 static const char *const methods[] = {"AUTO", "NEWTON", "SOR"};
 
-START_TEST(closed_form_agrees_with_the_published_numbers) {
+TEST(closed_form_agrees_with_the_published_numbers) {
   double K[2][2], u[2], r[2];
   stiffness_of(K);
   ck_assert_double_eq_tol(K[0][0], 0.8653846154, 1e-10);
@@ -114,9 +111,8 @@ START_TEST(closed_form_agrees_with_the_published_numbers) {
   ck_assert(solution(2.0, (double[]){1.9, -1}, 2, u, r));
   ck_assert_double_eq_tol(u[0], 1.04, 1e-9);
 }
-END_TEST
 
-START_TEST(unique_solution_is_found) {
+TEST(unique_solution_is_found) {
   static const double F[][2] = {{0, -1},    {-1, 0.3},   {1.9, -1}, {1, 0.01},
                                 {-0.5, -1}, {0.2, -0.3}, {0, 0}};
   static const double mu[] = {0.0, 0.3, 1.0, 1.7};
@@ -124,34 +120,30 @@ START_TEST(unique_solution_is_found) {
     for (size_t k = 0; k < sizeof F / sizeof *F; ++k)
       for (size_t m = 0; m < 4; ++m) {
         int code;
-        job j = run_triangle(mu[m], F[k][0], F[k][1], methods[s], &code);
+        JOB j = run_triangle(mu[m], F[k][0], F[k][1], methods[s], &code);
         ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
         ck_assert_msg(found_solution(&j, mu[m], F[k]) >= 0,
                       "%s, mu %g, F (%g, %g)", methods[s], mu[m], F[k][0],
                       F[k][1]);
-        job_end(&j);
       }
 }
-END_TEST
 
 /* Above mu = 1.8 one of the solutions, or an honest refusal; never another
  * state. AUTO must answer. */
-START_TEST(one_of_several_solutions_is_found) {
+TEST(one_of_several_solutions_is_found) {
   static const double mu[] = {2.0, 3.0, 10.0}, F[] = {1.9, -1.0};
   for (size_t s = 0; s < 3; ++s)
     for (size_t m = 0; m < 3; ++m) {
       int code;
-      job j = run_triangle(mu[m], F[0], F[1], methods[s], &code);
+      JOB j = run_triangle(mu[m], F[0], F[1], methods[s], &code);
       if (s == 0) ck_assert_int_eq(code, 0);
       if (code == 0) ck_assert_int_ge(found_solution(&j, mu[m], F), 0);
-      job_end(&j);
     }
 }
-END_TEST
 
 /* Numbers u_t_lowest of the solutions in JOB.json, and their count. */
 static int listed_solutions(const job *j, double *u_t, double *u_n) {
-  char *json = job_file(j, "json");
+  FREED char *json = job_file(j, "json");
   const char *at = strstr(json, "\"solutions\": [");
   int n = 0;
   ck_assert_ptr_nonnull(at);
@@ -160,7 +152,6 @@ static int listed_solutions(const job *j, double *u_t, double *u_n) {
     at = strstr(at, "\"u_t_lowest\": ");
     u_t[n++] = atof(at + strlen("\"u_t_lowest\": "));
   }
-  free(json);
   return n;
 }
 
@@ -168,7 +159,7 @@ static int listed_solutions(const job *j, double *u_t, double *u_n) {
  * forces within the law. */
 static void check_values(const job *j, double mu, int n, const double *u_t,
                          const double *u_n) {
-  char *lst = job_file(j, "lst");
+  FREED char *lst = job_file(j, "lst");
   const char *at = lst;
   for (int i = 0; i < n; ++i) {
     char word[16];
@@ -184,19 +175,18 @@ static void check_values(const job *j, double mu, int n, const double *u_t,
     ck_assert_double_le(fabs(v[3]), (mu + 1e-3) * v[2]);
     ck_assert_int_eq(strcmp(word, "OPEN") == 0, v[2] == 0.0);
   }
-  free(lst);
 }
 
 /* All three solutions, or the only one, by both ways of looking for them. With
  * NORMAL=OBSTACLE u_n = -u_y, u_t = u_x up to the sign of the tangent. */
-START_TEST(all_solutions_are_listed) {
+TEST(all_solutions_are_listed) {
   static const double mu[] = {1.0, 1.7, 2.0, 3.0}, F[] = {1.9, -1.0};
   static const char *const checks[] = {", CHECK=ALL", ", CHECK=YES"};
   for (size_t m = 0; m < 4; ++m)
     for (size_t c = 0; c < 2; ++c) {
       double u_t[8], u_n[8], u[2], r[2];
       int code, expected = 0, found = 0;
-      job j = run_checked(mu[m], F[0], F[1], "AUTO", checks[c], &code);
+      JOB j = run_checked(mu[m], F[0], F[1], "AUTO", checks[c], &code);
       ck_assert_int_eq(code, 0);
       int n = listed_solutions(&j, u_t, u_n);
       for (int k = 0; k < 4; ++k) {
@@ -209,14 +199,11 @@ START_TEST(all_solutions_are_listed) {
       ck_assert_int_eq(n, expected);
       ck_assert_int_eq(found, expected);
       if (c == 0) check_values(&j, mu[m], n, u_t, u_n);
-      char *sta = job_file(&j, "sta");
+      FREED char *sta = job_file(&j, "sta");
       ck_assert_int_eq(strstr(sta, "OK SOLUTIONS=3\n") != NULL, expected == 3);
       ck_assert_ptr_null(strstr(sta, "UNCONFIRMED"));
-      free(sta);
-      job_end(&j);
     }
 }
-END_TEST
 
 static job pushed(double mu) {
   job j = job_begin("triangle");
@@ -237,14 +224,14 @@ static job pushed(double mu) {
 
 /* Pressed by 1, then pushed: with mu = 2 the vertex sticks until the push is 2
  * and finds no other state near then; with mu = 1.7 it slides and opens. */
-START_TEST(jump_of_the_equilibrium_is_told) {
+TEST(jump_of_the_equilibrium_is_told) {
   static const double mu[] = {1.0, 1.7, 2.0, 3.0};
   for (int k = 0; k < 4; ++k) {
     int jumps = mu[k] > 1.8;
-    job j = pushed(mu[k]);
+    JOB j = pushed(mu[k]);
     ck_assert_int_eq(job_run(&j, ""), 0);
-    char *sta = job_file(&j, "sta"), *lst = job_file(&j, "lst"),
-         *json = job_file(&j, "json");
+    FREED char *sta = job_file(&j, "sta"), *lst = job_file(&j, "lst"),
+               *json = job_file(&j, "json");
     ck_assert_int_eq(strstr(sta, "OK JUMP\n") != NULL, jumps);
     ck_assert_int_eq(strstr(lst, "  JUMP: no path of equilibria") != NULL,
                      jumps);
@@ -253,13 +240,8 @@ START_TEST(jump_of_the_equilibrium_is_told) {
     if (jumps)
       ck_assert_double_eq_tol(atof(at + strlen("\"jump_time\": ")),
                               1.0 + mu[k] / 3.3, 1e-4);
-    free(sta);
-    free(lst);
-    free(json);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Share of the motion of an increment to the push f that the jump from stick at
  * the push 2 to the free state has, %: free, 2 J = F' inv(K) F. */
@@ -305,11 +287,11 @@ static double told_share(const job *j) {
 
 static void check_jump(const char *method, double dt, double gap,
                        int may_miss) {
-  job j = job_begin("triangle");
+  JOB j = job_begin("triangle");
   write_lowered(&j, method, dt, gap);
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0 || (code == 1 && may_miss), "%d", code);
-  char *json = job_file(&j, "json");
+  FREED char *json = job_file(&j, "json");
   const char *at = strstr(json, "\"jump_time\": ");
   ck_assert_ptr_nonnull(at);
   ck_assert_double_eq_tol(atof(at + strlen("\"jump_time\": ")), 3.5, 1e-4);
@@ -317,14 +299,12 @@ static void check_jump(const char *method, double dt, double gap,
   if (code == 0 && dt >= 1.0)
     ck_assert_double_eq_tol(told_share(&j), jump_share(dt > 5.0 ? 4.8 : 2.4),
                             0.6);
-  free(json);
-  job_end(&j);
 }
 
 /* The same with mu = 2: the push is 2 at 3.5, whatever the increment, the gap,
  * the method and the tolerance, also where the method does not find the state
  * after it. */
-START_TEST(jump_is_found_in_any_increment_by_any_method) {
+TEST(jump_is_found_in_any_increment_by_any_method) {
   static const double dt[] = {6.0, 3.0, 1.0, 0.1};
   const solver_ops *ops = NULL;
   for (int i = 0; i == 0 || ops != NULL; ++i) {
@@ -337,33 +317,24 @@ START_TEST(jump_is_found_in_any_increment_by_any_method) {
   check_jump("AUTO, TOL=BALANCED", 1.0, 0.0, 0);
   check_jump("AUTO, STIFFNESS=FACTOR", 3.0, 0.0, 0);
 }
-END_TEST
 
 /* A run that goes on just before the jump tells it as one that was not stopped.
  */
-START_TEST(jump_is_told_by_a_run_that_goes_on) {
+TEST(jump_is_told_by_a_run_that_goes_on) {
   static const char *const none[] = {NULL};
   traced t = {.action = TRACE_COUNT};
-  job whole = pushed(2);
+  JOB whole = pushed(2);
   ck_assert_int_eq(traced_run(&whole, none, &t), 0);
   const int all = t.changes;
   for (int k = 0; k < 3; ++k) {
-    job j = pushed(2);
+    JOB j = pushed(2);
     t = (traced){
         .action = TRACE_SIGNAL, .at = all * (24 + k) / 42, .number = SIGINT};
     ck_assert_int_eq(traced_run(&j, none, &t), 130);
-    int code = job_run(&j, "--restart --no-timing");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    CK_EXIT(job_run(&j, "--restart --no-timing"), 0, j);
     const char *file = traced_difference(&whole, &j);
     ck_assert_msg(file == NULL, "stopped at %d: .%s differs", k, file);
-    job_end(&j);
   }
-  job_end(&whole);
 }
-END_TEST
 
-UNIT_MAIN("triangle", jump_is_found_in_any_increment_by_any_method,
-          closed_form_agrees_with_the_published_numbers,
-          unique_solution_is_found, one_of_several_solutions_is_found,
-          all_solutions_are_listed, jump_of_the_equilibrium_is_told,
-          jump_is_told_by_a_run_that_goes_on)
+UNIT_MAIN("triangle")

@@ -3,7 +3,6 @@
  * another order and direction and in other units: all tables of both, component
  * by component.
  */
-#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
@@ -90,10 +89,10 @@ static void write_vector(const turning *t, int dim, const double *v,
 static void write_mesh(const job *j, const scene *s, const turning *t) {
   const mesh_change bent = {.map = {"x+0.1*y*y", "y*(1+0.2*x)+0.05*z*x",
                                     s->dim == 3 ? "z*(1+0.1*x*y)" : NULL}};
-  char path[200], line[300];
+  char line[300];
   int *number = NULL, no;
   double x[3];
-  snprintf(path, sizeof path, "%s/turned.msh", j->dir);
+  PRINTED(path, "%s/turned.msh", j->dir);
   FILE *from = tmpfile(), *to = fopen(path, "w");
   ck_assert(from != NULL && to != NULL);
   ck_assert(scene_mesh_write(from, s->mesh, &bent, &number));
@@ -179,8 +178,7 @@ static job run(const scene *s, const turning *t) {
       in_units(t, -2 * t->sign[1], -2, 1), place_of(t, 0), place_of(t, 0),
       place_of(t, 1), place_of(t, 0), place_of(t, s->dim - 1),
       s->creeps ? "" : ", GOALS");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
@@ -289,12 +287,12 @@ static const scene scenes[] = {
     {RECT, ", TYPE=CPE3", 2, 0, {{1, 0, 2}, {1, -1, 1}, -14, 21}},
     {RECT, ", TYPE=CPS3", 2, 1, {{1, 0, 2}, {-1, 1, 1}, 18, 6}}};
 
-START_TEST(axes_have_no_order) {
+TESTS(axes_have_no_order, sizeof scenes / sizeof *scenes) {
   static const char *const tables[] = {"CONTACT",  "TOTALS",    "NODES",
                                        "ELEMENTS", "REACTIONS", "ENERGY"};
   const scene *s = &scenes[_i];
-  job a = run(s, &still), b = run(s, &s->turned);
-  char *text = job_file(&a, "dat");
+  JOB a = run(s, &still), b = run(s, &s->turned);
+  FREED char *text = job_file(&a, "dat");
   for (size_t k = 0; k < sizeof tables / sizeof *tables; ++k) {
     dat of[2] = {job_table(&a, tables[k], -1), job_table(&b, tables[k], -1)};
     compare_columns(&of[0], &of[1], s, text, tables[k]);
@@ -305,10 +303,6 @@ START_TEST(axes_have_no_order) {
     compare_goals(&of[0], &of[1], s, text);
     for (int i = 0; i < 2; ++i) dat_free(&of[i]);
   }
-  free(text);
-  job_end(&a);
-  job_end(&b);
 }
-END_TEST
 
-UNIT_LOOP("turned", axes_have_no_order, sizeof scenes / sizeof *scenes)
+UNIT_MAIN_FOR("turned", 10 * UNIT_SECONDS)

@@ -3,7 +3,6 @@
  * (E = 1000, nu = 0.3, relaxation time 2 unless said otherwise), energies, and
  * what elastic groups cost.
  */
-#include "base/base.h"
 #include "support/square_case.h"
 #include "support/unit.h"
 
@@ -84,21 +83,19 @@ static const closed_form forms[] = {
 };
 /* clang-format on */
 
-START_TEST(closed_forms) {
+TESTS(closed_forms, (int)(sizeof forms / sizeof *forms)) {
   const closed_form *f = &forms[_i];
-  job j = square_run(&f->s, 0);
+  JOB j = square_run(&f->s, 0);
   for (int i = 0; i < f->n; ++i)
     square_all_have(&j, f->k[i], f->column, f->value[i], f->tolerance);
   for (int k = 0; k < 3; ++k)
     ck_assert_double_le(fabs(square_energy(&j, k, "energy_defect_relative")),
                         1e-10);
-  job_end(&j);
 }
-END_TEST
 
 /* Bingham, E = 1e5, threshold 100, hardening and viscosity 1e4, strained at
  * 1e-2: elastic up to t = 0.1. */
-START_TEST(viscoplastic_pull) {
+TEST(viscoplastic_pull) {
   square_case s = {"1.E5, 0.3",
                    "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
                    "CPS3",
@@ -106,15 +103,13 @@ START_TEST(viscoplastic_pull) {
                    SYMMETRY "TOP, 2\n",
                    "*VISCO, INTEGRATOR=RK4\n0.005, 1.\n"
                    "*BOUNDARY\nTOP, 2, 2, 1.E-2\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   square_all_have(&j, 10, "stress_yy", 50.0, 1e-9);
   square_all_have(&j, 30, "stress_yy", 139.5082801338, 1e-5);
   square_all_have(&j, 40, "stress_yy", 164.2255302729, 1e-5);
   square_all_have(&j, 100, "stress_yy", 217.9936082725, 1e-5);
   square_all_have(&j, 200, "stress_yy", 264.4586632494, 1e-5);
-  job_end(&j);
 }
-END_TEST
 
 #define SLIDES FLOOR(0.1), PRESS(10.)
 #define SUPPORTED "", SYMMETRY PULL(-10.)
@@ -143,11 +138,9 @@ enum { N_BALANCE = sizeof balances / sizeof *balances };
 /* Work less what is lost and stored, over the work, after n increments; the
  * laws lose in each, and the balance of the body closes. */
 static double unbalanced(square_case s, const char *integrator, int n) {
-  char visco[128];
-  snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=%s\n%.17g, 2.\n",
-           integrator, 2.0 / n);
+  PRINTED(visco, "*VISCO, INTEGRATOR=%s\n%.17g, 2.\n", integrator, 2.0 / n);
   s.visco = visco;
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   double lost = 0;
   for (int i = 1; i <= n; ++i) {
     double now = square_energy(&j, i, "viscous_dissipation");
@@ -159,11 +152,10 @@ static double unbalanced(square_case s, const char *integrator, int n) {
   ck_assert_double_gt(lost, 0);
   double work = square_energy(&j, -1, "inelastic_work");
   double gap = work - lost - square_energy(&j, -1, "inelastic_stored");
-  job_end(&j);
   return gap / work;
 }
 
-START_TEST(work_is_lost_to_the_order_of_the_quadrature) {
+TESTS(work_is_lost_to_the_order_of_the_quadrature, N_BALANCE) {
   const char *integrator = balances[_i].integrator;
   const square_case s = {
       STEEL, DEVIATORIC, "CPE3", balances[_i].model, balances[_i].load, NULL};
@@ -174,11 +166,10 @@ START_TEST(work_is_lost_to_the_order_of_the_quadrature) {
   ck_assert_double_ge(order, balances[_i].least);
   ck_assert_double_le(order, balances[_i].most);
 }
-END_TEST
 
 /* Laws that store energy, and such with a threshold, lose some in every
  * increment too. */
-START_TEST(laws_that_store_dissipate) {
+TESTS(laws_that_store_dissipate, 5) {
   static const char *const laws[] = {
       "*INELASTIC, LAW=KELVIN\n1000., 2000.\n3000., 1000.\n",
       "*INELASTIC, LAW=PRONY\n0.5, 0.1, 2.\n0.2, 0., 5.\n",
@@ -188,16 +179,12 @@ START_TEST(laws_that_store_dissipate) {
   const square_case s = {STEEL, laws[_i], "CPE3", SLIDES, NULL};
   ck_assert_double_lt(fabs(unbalanced(s, "BACKWARD", 8)), 0.2);
 }
-END_TEST
-enum { N_LAW = 5 };
 
 /* Radial displacement of the bore in its table number k, and the time. */
 static double bore(const job *j, int k, double *t) {
-  dat d = job_table(j, "NODES", k), e = job_table(j, "ENERGY", k);
+  DAT d = job_table(j, "NODES", k), e = job_table(j, "ENERGY", k);
   double u = dat_sum(&d, "u_r") / d.n_row;
   *t = dat_at(&e, 0, "time");
-  dat_free(&d);
-  dat_free(&e);
   return u;
 }
 
@@ -208,12 +195,11 @@ static void check_bore(const job *j, int n, double A) {
   const double q = sqrt(3) * 100 / n * power / (power - 1);
   const double rate = sqrt(3) / 2 * A * pow(q, n);
   double t[2];
-  char *text = job_file(j, "dat");
+  FREED char *text = job_file(j, "dat");
   int last = -1;
   ck_assert_ptr_nonnull(text);
   for (const char *at = text; (at = strstr(at, "table NODES")) != NULL; ++at)
     ++last;
-  free(text);
   double start = bore(j, 0, t);
   double before = bore(j, last - 1, t), now = bore(j, last, t + 1);
   ck_assert_double_eq_tol(start, 1.906666667e-3, 0.001 * 1.906666667e-3);
@@ -224,50 +210,46 @@ static void check_bore(const job *j, int n, double A) {
 /* Stress of the steady state at three radii: mean of two elements each. */
 static void steady_ring(int n, double A, const double *expected) {
   static const char *const column[] = {"stress_tt", "stress_rr", "stress_tt"};
-  job j = job_begin("visco");
-  job_copy(&j, "tests/regression/mesh/strips.geo");
-  job_write(&j, "visco.inp",
-            "*PARAMETER\nN = 75\nX0 = 1\nLY = 1/75\n"
-            "*MESH, FILE=strips.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
-            "*INELASTIC, LAW=NORTON\n%g, %d\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nTOP, 2\n"
-            "*DSLOAD\nLEFT, P, 100.\n*PRINT, ELEMENTS, GROUP=FIRST\n"
-            "*PRINT, ELEMENTS, GROUP=MIDDLE\n*PRINT, ELEMENTS, GROUP=LAST\n"
-            "*PRINT, NODES, GROUP=LEFT\n*PRINT, ENERGY\n"
-            "*OUTPUT, HDF5=NO\n*END STEP\n"
-            "*STEP\n*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=0.01\n1., 3000.\n"
-            "*PRINT, ELEMENTS, GROUP=FIRST, FREQUENCY=0\n"
-            "*PRINT, ELEMENTS, GROUP=MIDDLE, FREQUENCY=0\n"
-            "*PRINT, ELEMENTS, GROUP=LAST, FREQUENCY=0\n"
-            "*PRINT, NODES, GROUP=LEFT\n*PRINT, ENERGY\n*END STEP\n",
-            A, n);
+  JOB j = job_with(
+      "visco", "tests/regression/mesh/strips.geo",
+      "*PARAMETER\nN = 75\nX0 = 1\nLY = 1/75\n"
+      "*MESH, FILE=strips.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
+      "*INELASTIC, LAW=NORTON\n%g, %d\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nTOP, 2\n"
+      "*DSLOAD\nLEFT, P, 100.\n*PRINT, ELEMENTS, GROUP=FIRST\n"
+      "*PRINT, ELEMENTS, GROUP=MIDDLE\n*PRINT, ELEMENTS, GROUP=LAST\n"
+      "*PRINT, NODES, GROUP=LEFT\n*PRINT, ENERGY\n"
+      "*OUTPUT, HDF5=NO\n*END STEP\n"
+      "*STEP\n*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=0.01\n1., 3000.\n"
+      "*PRINT, ELEMENTS, GROUP=FIRST, FREQUENCY=0\n"
+      "*PRINT, ELEMENTS, GROUP=MIDDLE, FREQUENCY=0\n"
+      "*PRINT, ELEMENTS, GROUP=LAST, FREQUENCY=0\n"
+      "*PRINT, NODES, GROUP=LEFT\n*PRINT, ENERGY\n*END STEP\n",
+      A, n);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "n = %d: exit %d: %s", n, code, j.errors);
   for (int k = 0; k < 3; ++k) {
-    dat d = job_table(&j, "ELEMENTS", 3 + k);
+    DAT d = job_table(&j, "ELEMENTS", 3 + k);
     ck_assert_double_eq_tol(dat_sum(&d, column[k]) / d.n_row, expected[k],
                             0.01 * 100);
-    dat_free(&d);
   }
   check_bore(&j, n, A);
-  job_end(&j);
 }
 
 /* Tube, radii 1 and 2, inner pressure 100: hoop stress inside, radial stress
  * at 1.5, hoop stress outside; growth of the bore. */
-START_TEST(steady_creep_of_a_tube) {
+TEST(steady_creep_of_a_tube) {
   static const double third[] = {80.16095893, -35.99137724, 113.49429226};
   static const double fifth[] = {65.19251841, -38.16967948, 125.19251841};
   steady_ring(3, 1e-11, third);
   steady_ring(5, 1e-15, fifth);
 }
-END_TEST
 
 /* One factor for the elastic body and one for the tangent of a linear law, as
  * long as its coefficients stay; three or four in an increment of a power law;
  * none with initial stresses. */
-START_TEST(factors_are_kept) {
+TEST(factors_are_kept) {
   static const struct {
     const char *law, *visco;
     int least, most;
@@ -300,14 +282,12 @@ START_TEST(factors_are_kept) {
                      FLOOR(0.1),
                      "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n",
                      cases[i].visco};
-    job j = square_run(&s, 0);
+    JOB j = square_run(&s, 0);
     long calls = job_stage(&j, "factorisation", NULL);
     ck_assert_msg(calls >= cases[i].least && calls <= cases[i].most,
                   "case %zu: %ld factors", i, calls);
-    job_end(&j);
   }
 }
-END_TEST
 
 typedef struct counts {
   long factors, solves, contacts;
@@ -315,16 +295,14 @@ typedef struct counts {
 
 /* Calls of the stages in a run of steps with friction that slips. */
 static counts counts_of(const char *method, const char *visco) {
-  char cards[80];
-  snprintf(cards, sizeof cards,
-           "*SOLVER, METHOD=%s\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n",
-           method);
+  PRINTED(cards,
+          "*SOLVER, METHOD=%s\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n",
+          method);
   square_case s = {STEEL, PROPORTIONAL, "CPE3", FLOOR(0.1), cards, visco};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   counts c = {job_stage(&j, "factorisation", NULL),
               job_stage(&j, "interior solves", NULL),
               job_stage(&j, "contact solver", NULL)};
-  job_end(&j);
   return c;
 }
 
@@ -333,7 +311,7 @@ static counts counts_of(const char *method, const char *visco) {
 
 /* The elastic body and each THETA dt are factored once, whatever solves the
  * contact; an increment more is a forward and a back solve more. */
-START_TEST(increments_of_one_length_share_a_factor) {
+TEST(increments_of_one_length_share_a_factor) {
   static const char *const method[] = {"AUTO", "NEWTON", "AITKEN"};
   for (int i = 0; i < 3; ++i) {
     const counts few = counts_of(method[i], MIDPOINT("0.1", "1.")),
@@ -348,10 +326,9 @@ START_TEST(increments_of_one_length_share_a_factor) {
     ck_assert_int_eq(many.contacts - few.contacts, 10);
   }
 }
-END_TEST
 
 /* Steps of one THETA dt, which share their matrix but not what they do. */
-START_TEST(each_step_has_its_own_integrator) {
+TEST(each_step_has_its_own_integrator) {
   square_case s = {STEEL,
                    PROPORTIONAL,
                    "CPS3",
@@ -362,23 +339,21 @@ START_TEST(each_step_has_its_own_integrator) {
                    "*END STEP\n*STEP\n*VISCO, INTEGRATOR=EXPONENTIAL\n"
                    "1., 1.\n*END STEP\n*STEP\n"
                    "*VISCO, INTEGRATOR=THETA, THETA=0.25\n4., 4.\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   const double factor[] = {1 / 1.5, 0.5 / 1.5, exp(-0.5), -0.5 / 1.5};
   double stress = 1;
   for (int k = 0; k < 4; ++k) {
     stress *= factor[k];
     square_all_have(&j, k + 1, "stress_yy", stress, 1e-12);
   }
-  job_end(&j);
 }
-END_TEST
 
 #define START_STRAIN \
   "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, 1, 1.E-3\n"
 
 /* Inelastic strain from before between two walls: a stress that is there at
  * once and dies out; without a *VISCO step it stays. */
-START_TEST(initial_strain_is_a_stress_that_relaxes) {
+TEST(initial_strain_is_a_stress_that_relaxes) {
   square_case s = {STEEL,  PROPORTIONAL,
                    "CPS3", START_STRAIN,
                    WALLS,  "*VISCO, INTEGRATOR=EXPONENTIAL\n1., 2.\n"};
@@ -395,7 +370,6 @@ START_TEST(initial_strain_is_a_stress_that_relaxes) {
   square_all_have(&j, 1, "stress_xx", -1.0, 1e-9);
   job_end(&j);
 }
-END_TEST
 
 /* A body free of forces: each unit goes back by itself, and what the deck does
  * not give follows from the rest. E = 1000, e^i_yy after 1 s. */
@@ -431,12 +405,13 @@ static const struct {
     {"*INELASTIC, LAW=PRONY\n0.4, 0., 2.\n",
      STRAINED("BODY, 1, 1.E-3\nBODY, 2, 1.E-3\nBODY, 3, 1.E-3\n"), -1}};
 
-START_TEST(strains_of_units_and_their_sum_agree) {
+TESTS(strains_of_units_and_their_sum_agree,
+      (int)(sizeof units / sizeof *units)) {
   const int refused = units[_i].expected < 0;
   const square_case s = {"1000., 0.", units[_i].law,
                          "CPE3",      units[_i].start,
                          SYMMETRY,    "*VISCO, INTEGRATOR=RK4\n0.01, 1.\n"};
-  job j = square_run(&s, refused ? 2 : 0);
+  JOB j = square_run(&s, refused ? 2 : 0);
   if (refused) {
     ck_assert_ptr_nonnull(strstr(j.errors, "error P2063: *INITIAL CONDITIONS"));
     ck_assert_int_eq(job_run(&j, "--check"), 2);
@@ -444,13 +419,11 @@ START_TEST(strains_of_units_and_their_sum_agree) {
     square_all_have(&j, 100, "ei_yy", 1e-3 * units[_i].expected, 1e-12);
     square_all_have(&j, 100, "stress_yy", 0, 1e-12);
   }
-  job_end(&j);
 }
-END_TEST
 
 /* A threshold of 100 that hardens by 1e4 p: with p = 0.01 from before 150 does
  * not flow. */
-START_TEST(initial_hardening_counts) {
+TEST(initial_hardening_counts) {
   square_case s = {"1.E5, 0.3",
                    "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
                    "CPS3",
@@ -463,12 +436,10 @@ START_TEST(initial_hardening_counts) {
   job_end(&j);
   s.model = "";
   j = square_run(&s, 0);
-  dat d = job_table(&j, "ELEMENTS", 2);
+  DAT d = job_table(&j, "ELEMENTS", 2);
   ck_assert_double_lt(dat_at(&d, 0, "stress_yy"), 110.0);
-  dat_free(&d);
   job_end(&j);
 }
-END_TEST
 
 /* What changes at once at the start of a *VISCO step: temperatures of a body
  * that is held, its modulus, the end of a support, the rate of a law;
@@ -503,80 +474,68 @@ static const struct {
      "strain_yy",
      2e-3}};
 
-START_TEST(what_is_sudden_acts_at_once) {
-  job j = square_run(&sudden[_i].scene, 0);
-  dat d = job_table(&j, "ELEMENTS", -1);
+TESTS(what_is_sudden_acts_at_once, (int)(sizeof sudden / sizeof *sudden)) {
+  JOB j = square_run(&sudden[_i].scene, 0);
+  DAT d = job_table(&j, "ELEMENTS", -1);
   for (int i = 0; i < d.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&d, i, sudden[_i].column),
                             sudden[_i].expected,
                             3e-5 * fmax(fabs(sudden[_i].expected), 1e-3));
-  dat_free(&d);
-  job_end(&j);
 }
-END_TEST
 
 /* A foot that stuck slips at once where its friction falls: creep of few
  * increments is that of many. */
-START_TEST(sudden_slip_acts_at_once) {
+TEST(sudden_slip_acts_at_once) {
   double shear[2];
   for (int k = 0; k < 2; ++k) {
-    char visco[200];
-    snprintf(visco, sizeof visco,
-             "*VISCO, INTEGRATOR=HEUN\n%g, 1.\n"
-             "*FRICTION, CONTACT=C, LAW=COULOMB\n0.05\n",
-             k == 0 ? 0.1 : 0.01);
+    PRINTED(visco,
+            "*VISCO, INTEGRATOR=HEUN\n%g, 1.\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.05\n",
+            k == 0 ? 0.1 : 0.01);
     const square_case s = {STEEL,
                            ONE_SECOND,
                            "CPE3",
                            FLOOR(0.8),
                            "*BOUNDARY\nTOP, 1, 1, 0.004\nTOP, 2, 2, -0.01\n",
                            visco};
-    job j = square_run(&s, 0);
-    dat d = job_table(&j, "ELEMENTS", -1);
+    JOB j = square_run(&s, 0);
+    DAT d = job_table(&j, "ELEMENTS", -1);
     shear[k] = dat_max(&d, "gamma_xy");
-    dat_free(&d);
-    job_end(&j);
   }
   ck_assert_double_eq_tol(shear[0], shear[1], 0.005 * shear[1]);
 }
-END_TEST
 
 /* A sudden load that friction carries where it acts moves nothing: no increment
  * at the start by any method, whatever their rounding. */
-START_TEST(sudden_load_on_friction_moves_nothing) {
+TESTS(sudden_load_on_friction_moves_nothing, 3) {
   static const char *const methods[] = {"AUTO", "AUGLAG", "SOR"};
-  job j = job_begin("carried");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "carried.inp",
-            "*PARAMETER\nN = 3\n*MESH, FILE=square.geo\n"
-            "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"0.58 + 0.2*sin(t)\"\n"
-            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*INELASTIC, LAW=MAXWELL\n4.\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
-            "*OBSTACLE, NAME=O, TYPE=GAP\n0.1\n"
-            "*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=TRESCA\n1.\n"
-            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"
-            "*BOUNDARY\nTOP, 1, 2\nLEFT, 1\n*DSLOAD\nRIGHT, TY, -0.3, A\n"
-            "*SOLVER, METHOD=%s\n*PRINT, ENERGY\n*END STEP\n",
-            methods[_i]);
+  JOB j =
+      job_with("carried", "tests/regression/mesh/square.geo",
+               "*PARAMETER\nN = 3\n*MESH, FILE=square.geo\n"
+               "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"0.58 + 0.2*sin(t)\"\n"
+               "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+               "*INELASTIC, LAW=MAXWELL\n4.\n"
+               "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+               "*OBSTACLE, NAME=O, TYPE=GAP\n0.1\n"
+               "*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n"
+               "*FRICTION, CONTACT=C, LAW=TRESCA\n1.\n"
+               "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"
+               "*BOUNDARY\nTOP, 1, 2\nLEFT, 1\n*DSLOAD\nRIGHT, TY, -0.3, A\n"
+               "*SOLVER, METHOD=%s\n*PRINT, ENERGY\n*END STEP\n",
+               methods[_i]);
   ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
   ck_assert_double_eq(square_energy(&j, -1, "increment"), 4);
-  job_end(&j);
 }
-END_TEST
 
 /* Relaxation time 4 at 0 degrees and 1 at 100: at 50 it is 2.5, without any
  * thermal expansion. */
-START_TEST(temperature_sets_the_relaxation_time) {
+TEST(temperature_sets_the_relaxation_time) {
   square_case s = {STEEL,  "*INELASTIC, LAW=MAXWELL\n4., , 0.\n1., , 100.\n",
                    "CPS3", "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 50.\n",
                    HELD,   "*VISCO, INTEGRATOR=MIDPOINT\n0.01, 1.\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   square_all_have(&j, 100, "stress_yy", exp(-1 / 2.5), 1e-5);
-  job_end(&j);
 }
-END_TEST
 
 /* Temperatures that a rate with an activation energy cannot have: known before
  * the run, but for what an expression does within a step. */
@@ -610,37 +569,33 @@ static const struct {
      0,
      "material M: time 1.5: the temperature -400 is not above absolute zero"}};
 
-START_TEST(laws_refuse_what_is_not_above_absolute_zero) {
-  job j = square_run(&cold[_i].scene, 2);
+TESTS(laws_refuse_what_is_not_above_absolute_zero,
+      (int)(sizeof cold / sizeof *cold)) {
+  JOB j = square_run(&cold[_i].scene, 2);
   ck_assert_msg(strstr(j.errors, cold[_i].text) != NULL, "%s", j.errors);
   ck_assert_int_eq(job_run(&j, "--check"), cold[_i].early ? 2 : 0);
-  job_end(&j);
 }
-END_TEST
 
 /* A group without a law: the answer is that of elasticity, and its elements
  * are neither integrated nor stored. */
-START_TEST(elastic_groups_cost_nothing) {
+TEST(elastic_groups_cost_nothing) {
   long bytes[2] = {0, 0};
   for (int k = 0; k < 2; ++k) {
-    job j = job_begin("visco");
-    job_copy(&j, "tests/regression/mesh/layers.geo");
-    job_write(&j, "visco.inp",
-              "*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n*ELASTIC\n" STEEL
-              "\n" DEVIATORIC "*MATERIAL, NAME=E\n*ELASTIC\n" STEEL
-              "\n"
-              "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
-              "*SOLID SECTION, ELSET=HARD, MATERIAL=%s\n"
-              "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n0.5, 1.\n"
-              "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n"
-              "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
-              k == 0 ? "M" : "E");
-    int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-    dat d = job_table(&j, "ELEMENTS", -1);
+    JOB j =
+        job_with("visco", "tests/regression/mesh/layers.geo",
+                 "*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n*ELASTIC\n" STEEL
+                 "\n" DEVIATORIC "*MATERIAL, NAME=E\n*ELASTIC\n" STEEL
+                 "\n"
+                 "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
+                 "*SOLID SECTION, ELSET=HARD, MATERIAL=%s\n"
+                 "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n0.5, 1.\n"
+                 "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n"
+                 "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
+                 k == 0 ? "M" : "E");
+    CK_EXIT(job_run(&j, ""), 0, j);
+    DAT d = job_table(&j, "ELEMENTS", -1);
     if (k == 1) ck_assert_double_eq(dat_max(&d, "ei_yy"), 0.0);
     if (k == 0) ck_assert_double_gt(dat_max(&d, "ei_yy"), 1e-5);
-    dat_free(&d);
     char *lst = job_file(&j, "lst"),
          *at = strstr(lst, "\n  inelastic strains ");
     long calls;
@@ -649,74 +604,62 @@ START_TEST(elastic_groups_cost_nothing) {
     ck_assert_int_eq(sscanf(at + 21, "%ld %lf %ld", &calls, &cpu, &bytes[k]),
                      3);
     free(lst);
-    job_end(&j);
   }
   ck_assert_int_le(bytes[1], bytes[0] * 6 / 10);
 }
-END_TEST
 
 /* Heat in a group that creeps and, below or above it, in one that does not. */
-START_TEST(works_beside_an_elastic_group_balance) {
-  job j = job_begin("visco");
-  job_copy(&j, "tests/regression/mesh/layers.geo");
-  job_write(&j, "visco.inp",
-            "*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n*ELASTIC\n" STEEL
-            "\n*EXPANSION\n2E-5\n" DEVIATORIC
-            "*MATERIAL, NAME=E\n*ELASTIC\n" STEEL
-            "\n*EXPANSION\n1E-5\n"
-            "*SOLID SECTION, ELSET=SOFT, MATERIAL=%s\n"
-            "*SOLID SECTION, ELSET=HARD, MATERIAL=%s\n"
-            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n"
-            "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2\n"
-            "*TEMPERATURE\nSOFT, \"20*x+10\"\nHARD, \"30-10*y\"\n"
-            "*OUTPUT, HDF5=NO\n*PRINT, ENERGY\n*END STEP\n",
-            _i == 0 ? "M" : "E", _i == 0 ? "E" : "M");
+TESTS(works_beside_an_elastic_group_balance, 2) {
+  JOB j = job_with("visco", "tests/regression/mesh/layers.geo",
+                   "*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n*ELASTIC\n" STEEL
+                   "\n*EXPANSION\n2E-5\n" DEVIATORIC
+                   "*MATERIAL, NAME=E\n*ELASTIC\n" STEEL
+                   "\n*EXPANSION\n1E-5\n"
+                   "*SOLID SECTION, ELSET=SOFT, MATERIAL=%s\n"
+                   "*SOLID SECTION, ELSET=HARD, MATERIAL=%s\n"
+                   "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n"
+                   "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2\n"
+                   "*TEMPERATURE\nSOFT, \"20*x+10\"\nHARD, \"30-10*y\"\n"
+                   "*OUTPUT, HDF5=NO\n*PRINT, ENERGY\n*END STEP\n",
+                   _i == 0 ? "M" : "E", _i == 0 ? "E" : "M");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-  dat e = job_table(&j, "ENERGY", -1);
+  DAT e = job_table(&j, "ENERGY", -1);
   ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-12);
   ck_assert_double_gt(fabs(dat_at(&e, 0, "thermal_work")), 1e-9);
   ck_assert_double_gt(dat_at(&e, 0, "viscous_dissipation"), 1e-9);
-  dat_free(&e);
-  job_end(&j);
 }
-END_TEST
 
 /* A pull that grows to 10 in four increments, whose rates are taken at 0, 2.5,
  * 5 and 7.5: below the threshold of 4 in two of them. Elements of an elastic
  * group are not looked at. */
-START_TEST(points_at_rest_are_counted) {
+TEST(points_at_rest_are_counted) {
   for (int k = 0; k < 2; ++k) {
-    job j = job_begin("visco");
-    job_copy(&j, "tests/regression/mesh/layers.geo");
-    job_write(&j, "visco.inp",
-              "*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n*ELASTIC\n" STEEL
-              "\n*INELASTIC, LAW=PERZYNA\n4., 1.E4\n"
-              "*MATERIAL, NAME=E\n*ELASTIC\n" STEEL
-              "\n"
-              "*SOLID SECTION, ELSET=SOFT, MATERIAL=M, TYPE=CPS3\n"
-              "*SOLID SECTION, ELSET=HARD, MATERIAL=%s, TYPE=CPS3\n"
-              "*STEP\n*VISCO, INTEGRATOR=EULER\n0.25, 1.\n"
-              "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n*DSLOAD\nTOP, TY, 10.\n"
-              "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=SOFT\n"
-              "*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
-              k == 0 ? "M" : "E");
+    JOB j =
+        job_with("visco", "tests/regression/mesh/layers.geo",
+                 "*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n*ELASTIC\n" STEEL
+                 "\n*INELASTIC, LAW=PERZYNA\n4., 1.E4\n"
+                 "*MATERIAL, NAME=E\n*ELASTIC\n" STEEL
+                 "\n"
+                 "*SOLID SECTION, ELSET=SOFT, MATERIAL=M, TYPE=CPS3\n"
+                 "*SOLID SECTION, ELSET=HARD, MATERIAL=%s, TYPE=CPS3\n"
+                 "*STEP\n*VISCO, INTEGRATOR=EULER\n0.25, 1.\n"
+                 "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n*DSLOAD\nTOP, TY, 10.\n"
+                 "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=SOFT\n"
+                 "*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
+                 k == 0 ? "M" : "E");
     ck_assert_int_eq(job_run(&j, ""), 0);
-    dat soft = job_table(&j, "ELEMENTS", 0),
+    DAT soft = job_table(&j, "ELEMENTS", 0),
         hard = job_table(&j, "ELEMENTS", 1);
     const int n = soft.n_row + (k == 0 ? hard.n_row : 0);
     ck_assert_int_gt(hard.n_row, 0);
     ck_assert_double_eq(job_told(&j, "threshold_evaluations"), 4 * n);
     ck_assert_double_eq(job_told(&j, "threshold_resting"), 2 * n);
-    dat_free(&soft);
-    dat_free(&hard);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* A body that its support carries has no stress but rounding, which none of the
  * iterations of a step takes away: no increment is cut for it. */
-START_TEST(carried_bodies_settle) {
+TESTS(carried_bodies_settle, 3) {
   static const char *const laws[] = {PROPORTIONAL, DEVIATORIC,
                                      "*INELASTIC, LAW=KELVIN\n500., 1000.\n"};
   const square_case s = {STEEL,
@@ -726,39 +669,8 @@ START_TEST(carried_bodies_settle) {
                          "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 1.E-4\n",
                          "*VISCO, INTEGRATOR=BACKWARD, ITERATION=INITIAL\n"
                          "0.25, 1.\n"};
-  job j = square_run(&s, 0);
+  JOB j = square_run(&s, 0);
   ck_assert_double_eq(square_energy(&j, -1, "increment"), 4);
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("visco");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, closed_forms, 0,
-                      (int)(sizeof forms / sizeof *forms));
-  tcase_add_test(tests, viscoplastic_pull);
-  tcase_add_loop_test(tests, work_is_lost_to_the_order_of_the_quadrature, 0,
-                      N_BALANCE);
-  tcase_add_loop_test(tests, laws_that_store_dissipate, 0, N_LAW);
-  tcase_add_test(tests, elastic_groups_cost_nothing);
-  tcase_add_test(tests, points_at_rest_are_counted);
-  tcase_add_loop_test(tests, works_beside_an_elastic_group_balance, 0, 2);
-  tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
-  tcase_add_loop_test(tests, strains_of_units_and_their_sum_agree, 0,
-                      (int)(sizeof units / sizeof *units));
-  tcase_add_test(tests, initial_hardening_counts);
-  tcase_add_test(tests, temperature_sets_the_relaxation_time);
-  tcase_add_loop_test(tests, laws_refuse_what_is_not_above_absolute_zero, 0,
-                      (int)(sizeof cold / sizeof *cold));
-  tcase_add_loop_test(tests, what_is_sudden_acts_at_once, 0,
-                      (int)(sizeof sudden / sizeof *sudden));
-  tcase_add_test(tests, sudden_slip_acts_at_once);
-  tcase_add_loop_test(tests, sudden_load_on_friction_moves_nothing, 0, 3);
-  tcase_add_test(tests, steady_creep_of_a_tube);
-  tcase_add_test(tests, factors_are_kept);
-  tcase_add_test(tests, increments_of_one_length_share_a_factor);
-  tcase_add_test(tests, each_step_has_its_own_integrator);
-  tcase_add_loop_test(tests, carried_bodies_settle, 0, 3);
-  return unit_run("visco", tests);
-}
+UNIT_MAIN("visco")

@@ -2,7 +2,6 @@
  * *WEAR against closed forms: depth k p v t under a block that a belt passes,
  * and the flat that a cylinder gets.
  */
-#include "base/base.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
@@ -14,8 +13,7 @@
 static int run_block(job *j, const char *geo, const char *type, const char *way,
                      const char *cards, const char *words) {
   const int solid = strstr(geo, "cube") != NULL;
-  char path[80];
-  snprintf(path, sizeof path, "tests/regression/mesh/%s.geo", geo);
+  PRINTED(path, "tests/regression/mesh/%s.geo", geo);
   job_copy(j, path);
   job_write(j, "block.inp",
             "*PARAMETER\nN = 2\nDT = 1.\n*MESH, FILE=%s.geo\n"
@@ -42,103 +40,86 @@ static int run_block(job *j, const char *geo, const char *type, const char *way,
 #define WORN "*WEAR, CONTACT=FOOT, COEFFICIENT=1.E-4\n"
 
 static void check_depth(const job *j, double expected) {
-  dat w = job_table(j, "WEAR", -1), all = job_table(j, "TOTALS", -1);
+  DAT w = job_table(j, "WEAR", -1), all = job_table(j, "TOTALS", -1);
   ck_assert_int_gt(w.n_row, 2);
   for (int i = 0; i < w.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&w, i, "depth"), expected, 1e-10 * expected);
   ck_assert_double_eq_tol(dat_sum(&w, "volume"), expected, 1e-10 * expected);
   ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), expected,
                           1e-10 * expected);
-  dat_free(&w);
-  dat_free(&all);
 }
 
-START_TEST(depth_under_a_belt) {
+TESTS(depth_under_a_belt, 2) {
   static const struct {
     const char *geo, *type, *way;
   } scenes[] = {{"square", "CPE3", "10, 0"}, {"cube", "", "6, -8, 0"}};
-  job j = job_begin("block");
+  JOB j = job_begin("block");
   int code = run_block(&j, scenes[_i].geo, scenes[_i].type, scenes[_i].way,
                        WORN, "--no-timing");
   ck_assert_msg(code == 0, "%s", j.errors);
   check_depth(&j, 1e-4 * 3 * 10);
   /* The obstacle takes the work p depth, less what it put in at first. */
-  dat e = job_table(&j, "ENERGY", -1), first = job_table(&j, "ENERGY", 0);
+  DAT e = job_table(&j, "ENERGY", -1), first = job_table(&j, "ENERGY", 0);
   ck_assert_double_eq_tol(
       dat_at(&first, 0, "normal_work") - dat_at(&e, 0, "normal_work"),
       3 * 1e-4 * 3 * 9, 1e-10);
   ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect")), 1e-13);
-  dat_free(&e);
-  dat_free(&first);
-  job_end(&j);
 }
-END_TEST
 
 /* Archard at a corner: floor and wall each lose k F s of their own force,
  * pressed with 3 and 1, where the belt passes along both by 1. The block rubs
  * on each by half of what the other presses it together, F/E, before. */
 /* Within the fifth increment of the belt: what four and a half have worn. */
-START_TEST(depth_at_a_time_point_counts_from_the_start) {
-  job j = job_begin("block");
+TEST(depth_at_a_time_point_counts_from_the_start) {
+  JOB j = job_begin("block");
   ck_assert_int_eq(run_block(&j, "square", "CPE3", "10, 0",
                              WORN "*TIME POINTS, NAME=T\n4.5\n", ""),
                    0);
-  dat w = job_table(&j, "WEAR", 1 + 4);
+  DAT w = job_table(&j, "WEAR", 1 + 4);
   ck_assert_int_gt(w.n_row, 2);
   for (int i = 0; i < w.n_row; ++i)
     ck_assert_double_eq_tol(dat_at(&w, i, "depth"), 1e-4 * 3 * 4.5, 1e-12);
-  dat_free(&w);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(each_side_of_a_corner_wears_by_its_own_force) {
-  job j = job_begin("block");
-  job_copy(&j, "tests/regression/mesh/cube.geo");
-  job_write(&j, "block.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-            "*AMPLITUDE, NAME=RUN, TIME=TOTAL TIME\n0, 0, 1, 0, 2, 1\n"
-            "*OBSTACLE, NAME=BELT, TYPE=PLANE, AMPLITUDE=RUN\n0, 0, 0\n"
-            "0, 0, 1\nMOVE, 0, 1, 0\n"
-            "*OBSTACLE, NAME=SIDE, TYPE=PLANE, AMPLITUDE=RUN\n0, 0, 0\n"
-            "1, 0, 0\nMOVE, 0, 1, 0\n"
-            "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=BELT\n"
-            "*CONTACT, NAME=WALL, GROUP=LEFT, OBSTACLE=SIDE\n" WORN
-            "*WEAR, CONTACT=WALL, COEFFICIENT=1.E-4\n"
-            "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nFRONT, 2\n"
-            "*DSLOAD\nTOP, P, 3.\nRIGHT, P, 1.\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n1., 1.\n*PRINT, TOTALS, CONTACT\n"
-            "*END STEP\n");
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat t = job_table(&j, "TOTALS", -1);
+TEST(each_side_of_a_corner_wears_by_its_own_force) {
+  JOB j =
+      job_with("block", "tests/regression/mesh/cube.geo",
+               "*PARAMETER\nN = 2\n*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+               "*AMPLITUDE, NAME=RUN, TIME=TOTAL TIME\n0, 0, 1, 0, 2, 1\n"
+               "*OBSTACLE, NAME=BELT, TYPE=PLANE, AMPLITUDE=RUN\n0, 0, 0\n"
+               "0, 0, 1\nMOVE, 0, 1, 0\n"
+               "*OBSTACLE, NAME=SIDE, TYPE=PLANE, AMPLITUDE=RUN\n0, 0, 0\n"
+               "1, 0, 0\nMOVE, 0, 1, 0\n"
+               "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=BELT\n"
+               "*CONTACT, NAME=WALL, GROUP=LEFT, OBSTACLE=SIDE\n" WORN
+               "*WEAR, CONTACT=WALL, COEFFICIENT=1.E-4\n"
+               "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nFRONT, 2\n"
+               "*DSLOAD\nTOP, P, 3.\nRIGHT, P, 1.\n*END STEP\n"
+               "*STEP\n*QUASISTATIC\n1., 1.\n*PRINT, TOTALS, CONTACT\n"
+               "*END STEP\n");
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
+  DAT t = job_table(&j, "TOTALS", -1);
   for (int i = 0; i < 2; ++i)
     ck_assert_double_eq_tol(dat_at(&t, i, "worn_volume"),
                             1e-4 * (i == 0 ? 3 * (1 + 0.5e-3) : 1 + 1.5e-3),
                             1e-12);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* A wall in x pushes the block of nu = 0 along the floor, LEFT held. */
-START_TEST(corner_wears_where_a_wall_pushes_it) {
-  job j = job_begin("block");
+TEST(corner_wears_where_a_wall_pushes_it) {
+  JOB j = job_begin("block");
   const char *const cards =
       "*OBSTACLE, NAME=PUSH, TYPE=PLANE, AMPLITUDE=RUN\n1, 0\n-1, 0\n"
       "MOVE, -0.01, 0\n*CONTACT, NAME=SIDE, GROUP=RIGHT, OBSTACLE=PUSH\n" WORN;
   ck_assert_int_eq(run_block(&j, "square", "CPE3", "0, 0", cards, ""), 0);
-  dat w = job_table(&j, "WEAR", -1);
+  DAT w = job_table(&j, "WEAR", -1);
   for (int i = 0; i < w.n_row; ++i)
     ck_assert_double_eq_tol(
         dat_at(&w, i, "depth"),
         (dat_at(&w, i, "y") > 0 ? 0 : 1e-4 * 3 * 0.01 * dat_at(&w, i, "x")),
         1e-8);
-  dat_free(&w);
-  job_end(&j);
 }
-END_TEST
 
 /* The block beside a wall, or below a roof, that it does not touch. */
 static job run_beside(int solid, int wall, const char *method) {
@@ -169,7 +150,7 @@ static job run_beside(int solid, int wall, const char *method) {
 
 static void check_same(const job *a, const job *b, const char *table,
                        const char *const *names) {
-  dat one = job_table(a, table, -1), two = job_table(b, table, -1);
+  DAT one = job_table(a, table, -1), two = job_table(b, table, -1);
   const int by_node = strcmp(table, "CONTACT") == 0;
   for (int i = 0; i < (by_node ? one.n_row : 1); ++i) {
     int k = 0;
@@ -182,13 +163,11 @@ static void check_same(const job *a, const job *b, const char *table,
           "%s, row %d, %s: %g for %g", table, i, names[n],
           dat_at(&two, k, names[n]), dat_at(&one, i, names[n]));
   }
-  dat_free(&one);
-  dat_free(&two);
 }
 
 /* Nodes that may touch a second obstacle have no friction, and but for it all
  * that they would have without the obstacle. */
-START_TEST(second_obstacle_that_is_not_met_changes_nothing) {
+TESTS(second_obstacle_that_is_not_met_changes_nothing, 2) {
   static const char *const of_nodes[2][12] = {
       {"y", "u_n", "u_t", "slip", "slip_distance", "slip_dir_x", "f_n"},
       {"z", "u_n", "u_t1", "u_t2", "slip_1", "slip_2", "slip_distance",
@@ -198,50 +177,42 @@ START_TEST(second_obstacle_that_is_not_met_changes_nothing) {
       {"", "normal", "way_1", "way_2", "mean_u_t1", "mean_u_t2"}};
   static const char *const of_totals[] = {"",     "closed_area", "worn_volume",
                                           "open", "slip",        NULL};
-  job roof = run_beside(_i, 0, "NEWTON"), wall = run_beside(_i, 1, "NEWTON");
+  JOB roof = run_beside(_i, 0, "NEWTON"), wall = run_beside(_i, 1, "NEWTON");
   check_same(&roof, &wall, "CONTACT", of_nodes[_i]);
   check_same(&roof, &wall, "LOOP", of_loops[_i]);
   check_same(&roof, &wall, "TOTALS", of_totals);
-  job_end(&roof);
-  job_end(&wall);
 }
-END_TEST
 
 /* SOR leaves forces of rounding at open obstacles. */
-START_TEST(second_obstacle_that_is_not_met_is_open) {
-  job j = run_beside(1, 1, "SOR");
-  dat t = job_table(&j, "TOTALS", -1);
+TEST(second_obstacle_that_is_not_met_is_open) {
+  JOB j = run_beside(1, 1, "SOR");
+  DAT t = job_table(&j, "TOTALS", -1);
   ck_assert(dat_at(&t, 1, "normal") != 0);
   ck_assert(dat_at(&t, 1, "closed_area") == 0);
   ck_assert(dat_at(&t, 1, "slip") == 0);
   ck_assert(dat_at(&t, 1, "open") > 2);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 /* All of the block slips against friction: wear as the work of the normal
  * forces, whatever the pressures; stopped and gone on with. */
-START_TEST(volume_with_friction_and_restart) {
-  job j = job_begin("block");
+TEST(volume_with_friction_and_restart) {
+  JOB j = job_begin("block");
   const char *const cards = "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.2\n" WORN;
   ck_assert_int_eq(
       run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing"), 0);
   double volume = 0;
   for (int k = 0; k <= 10; ++k) {
-    dat c = job_table(&j, "CONTACT", k);
+    DAT c = job_table(&j, "CONTACT", k);
     for (int i = 0; i < c.n_row; ++i)
       volume += 1e-4 * dat_at(&c, i, "f_n") * fabs(dat_at(&c, i, "slip"));
-    dat_free(&c);
   }
-  dat all = job_table(&j, "TOTALS", -1);
+  DAT all = job_table(&j, "TOTALS", -1);
   ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), volume, 1e-12);
   ck_assert_double_eq_tol(volume, 3e-3, 1e-5);
-  dat_free(&all);
   /* Stopped half way and gone on with: the same files. */
   static const char *const words[] = {"--no-timing", NULL};
   traced t = {.action = TRACE_SIGNAL, .number = SIGTERM};
-  job stopped = job_begin("block");
+  JOB stopped = job_begin("block");
   run_block(&stopped, "square", "CPE3", "10, 0", cards, "--check");
   ck_assert_int_eq(traced_run(&stopped, words, &t), 0);
   t.at = t.changes / 2;
@@ -250,16 +221,12 @@ START_TEST(volume_with_friction_and_restart) {
   ck_assert_int_eq(job_run(&stopped, "--restart --no-timing"), 0);
   const char *differs = traced_difference(&j, &stopped);
   ck_assert_msg(differs == NULL, ".%s differs", differs);
-  job_end(&stopped);
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(increments_too_long_are_refused) {
-  job j = job_begin("block");
+TEST(increments_too_long_are_refused) {
+  JOB j = job_begin("block");
   const char *const card = "*WEAR, CONTACT=FOOT, COEFFICIENT=%g\n";
-  char cards[80];
-  snprintf(cards, sizeof cards, card, 0.002);
+  PRINTED(cards, card, 0.002);
   ck_assert_int_eq(
       run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing"), 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "give increments of dt <="));
@@ -267,61 +234,51 @@ START_TEST(increments_too_long_are_refused) {
       run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing -D DT=0.1"),
       0);
   check_depth(&j, 0.002 * 3 * 10);
-  job_end(&j);
 }
-END_TEST
 
 /* What did not converge is told as that, whatever it would wear. */
-START_TEST(increments_without_equilibrium_are_not_refused_for_wear) {
+TEST(increments_without_equilibrium_are_not_refused_for_wear) {
   static const char *const limit[] = {
       "", ", METHOD=NEWTON, MAX_ITER=2",
       ", METHOD=NEWTON, MAX_ITER=1\n*END STEP\n*STEP\n*QUASISTATIC\n1., 1.\n"
       "*BOUNDARY\nTOP, 1, 1, 0.02\n*SOLVER, MAX_ITER=0"};
   for (int i = 0; i < 3; ++i) {
-    job j = job_begin("rubbed");
-    job_copy(&j, "tests/regression/mesh/square.geo");
-    job_write(&j, "rubbed.inp",
-              "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-              "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-              "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0, 0\n0, 1\n"
-              "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=FLOOR\n"
-              "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n"
-              "*WEAR, CONTACT=FOOT, COEFFICIENT=1.\n*STEP\n*QUASISTATIC\n"
-              "1., 1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2, -0.001\n"
-              "*SOLVER%s\n*END STEP\n",
-              limit[i]);
+    JOB j = job_with(
+        "rubbed", "tests/regression/mesh/square.geo",
+        "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+        "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+        "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0, 0\n0, 1\n"
+        "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=FLOOR\n"
+        "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n"
+        "*WEAR, CONTACT=FOOT, COEFFICIENT=1.\n*STEP\n*QUASISTATIC\n"
+        "1., 1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2, -0.001\n"
+        "*SOLVER%s\n*END STEP\n",
+        limit[i]);
     ck_assert_int_eq(job_run(&j, ""), i == 0 ? 2 : 1);
     ck_assert_int_eq(strstr(j.errors, "P2050") != NULL, i == 0);
-    job_end(&j);
   }
 }
-END_TEST
 
 /* Half the increments wear differently: no error of the steps is known, and no
  * sum of errors. */
-START_TEST(target_of_an_unknown_error_is_refused) {
-  job j = job_begin("block");
+TEST(target_of_an_unknown_error_is_refused) {
+  JOB j = job_begin("block");
   static const char cards[] = WORN
       "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\n"
       "*DSLOAD\nTOP, P, 3., RUN\n*ACCURACY, TARGET=1\n*END STEP\n";
   ck_assert_int_eq(
       run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing"), 2);
   ck_assert_ptr_nonnull(strstr(j.errors, "error P2066: *WEAR: TARGET="));
-  job_end(&j);
 }
-END_TEST
 
-START_TEST(nothing_without_the_card) {
-  job j = job_begin("block");
+TEST(nothing_without_the_card) {
+  JOB j = job_begin("block");
   ck_assert_int_eq(run_block(&j, "square", "CPE3", "10, 0", "", "--no-timing"),
                    0);
-  dat all = job_table(&j, "TOTALS", -1);
+  DAT all = job_table(&j, "TOTALS", -1);
   ck_assert(!dat_has(&all, "worn_volume"));
-  dat_free(&all);
   ck_assert_int_eq(job_stage(&j, "wear", NULL), 0);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * A cylinder of steel worn on a plane until the flat is 5 Hertz half-widths a
@@ -330,31 +287,29 @@ END_TEST
  *   k P s = b (4 b^2 - 3 a^2)/(6 R),
  * without elasticity 2 b^3/3R. The pressure is the more even the larger b/a.
  */
-START_TEST(flat_of_a_cylinder) {
-  job j = job_begin("pin");
-  job_copy(&j, "input/hertz_line/hertz_line.geo");
-  job_write(&j, "pin.inp",
-            "*PARAMETER\nR = 10.\nP = 1000.\nE = 210.D3\nNU = 0.3\n"
-            "A = \"sqrt(4*P*R*(1 - NU^2)/(pi*E))\"\nB = \"2.5*A\"\nNC = 6\n"
-            "K = \"B*(4*B^2 - 3*A^2)/(6*R)/P\"\n*MESH, FILE=hertz_line.geo\n"
-            "*MATERIAL, NAME=STEEL\n*ELASTIC\n<E>, <NU>\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL, TYPE=CPE3\n"
-            "*AMPLITUDE, NAME=RUN, TIME=TOTAL TIME\n0, 0, 1, 0, 2, 1\n"
-            "*OBSTACLE, NAME=PLANE, TYPE=PLANE, AMPLITUDE=RUN\n0, 0\n0, 1\n"
-            "MOVE, 1, 0\n*CONTACT, NAME=LINE, GROUP=CONTACT, OBSTACLE=PLANE, "
-            "NORMAL=OBSTACLE\n*WEAR, CONTACT=LINE, COEFFICIENT=<K>\n"
-            "*STEP\n*QUASISTATIC\n1, 1\n*BOUNDARY\nSYMMETRY, 1\n"
-            "*DSLOAD\nTOP, P, \"P/(2*R)\"\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n0.005, 1\n"
-            "*PRINT, CONTACT, TOTALS, FREQUENCY=0\n*ACCURACY, TIME=YES\n"
-            "*END STEP\n");
+TEST(flat_of_a_cylinder) {
+  JOB j = job_with(
+      "pin", "input/hertz_line/hertz_line.geo",
+      "*PARAMETER\nR = 10.\nP = 1000.\nE = 210.D3\nNU = 0.3\n"
+      "A = \"sqrt(4*P*R*(1 - NU^2)/(pi*E))\"\nB = \"2.5*A\"\nNC = 6\n"
+      "K = \"B*(4*B^2 - 3*A^2)/(6*R)/P\"\n*MESH, FILE=hertz_line.geo\n"
+      "*MATERIAL, NAME=STEEL\n*ELASTIC\n<E>, <NU>\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL, TYPE=CPE3\n"
+      "*AMPLITUDE, NAME=RUN, TIME=TOTAL TIME\n0, 0, 1, 0, 2, 1\n"
+      "*OBSTACLE, NAME=PLANE, TYPE=PLANE, AMPLITUDE=RUN\n0, 0\n0, 1\n"
+      "MOVE, 1, 0\n*CONTACT, NAME=LINE, GROUP=CONTACT, OBSTACLE=PLANE, "
+      "NORMAL=OBSTACLE\n*WEAR, CONTACT=LINE, COEFFICIENT=<K>\n"
+      "*STEP\n*QUASISTATIC\n1, 1\n*BOUNDARY\nSYMMETRY, 1\n"
+      "*DSLOAD\nTOP, P, \"P/(2*R)\"\n*END STEP\n"
+      "*STEP\n*QUASISTATIC\n0.005, 1\n"
+      "*PRINT, CONTACT, TOTALS, FREQUENCY=0\n*ACCURACY, TIME=YES\n"
+      "*END STEP\n");
   ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
-  char *listing = job_file(&j, "lst");
+  FREED char *listing = job_file(&j, "lst");
   ck_assert_ptr_nonnull(
       strstr(listing, "error of the steps: unknown, wear of half"));
-  free(listing);
   const double a = 0.2348908547, b = 2.5 * a;
-  dat all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
+  DAT all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
   const double volume = b * (4 * b * b - 3 * a * a) / 60;
   ck_assert_double_eq_tol(2 * dat_at(&all, 0, "worn_volume"), volume,
                           2e-3 * volume);
@@ -363,28 +318,6 @@ START_TEST(flat_of_a_cylinder) {
   const double top = dat_at(&c, dat_row_near(&c, "x", 0), "pressure");
   ck_assert_double_ge(top, mean);
   ck_assert_double_le(top, 1.06 * mean);
-  dat_free(&all);
-  dat_free(&c);
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("wear");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, depth_under_a_belt, 0, 2);
-  tcase_add_test(tests, depth_at_a_time_point_counts_from_the_start);
-  tcase_add_test(tests, each_side_of_a_corner_wears_by_its_own_force);
-  tcase_add_test(tests, corner_wears_where_a_wall_pushes_it);
-  tcase_add_loop_test(tests, second_obstacle_that_is_not_met_changes_nothing, 0,
-                      2);
-  tcase_add_test(tests, second_obstacle_that_is_not_met_is_open);
-  tcase_add_test(tests, volume_with_friction_and_restart);
-  tcase_add_test(tests, increments_too_long_are_refused);
-  tcase_add_test(tests,
-                 increments_without_equilibrium_are_not_refused_for_wear);
-  tcase_add_test(tests, target_of_an_unknown_error_is_refused);
-  tcase_add_test(tests, nothing_without_the_card);
-  tcase_add_test(tests, flat_of_a_cylinder);
-  return unit_run("wear", tests);
-}
+UNIT_MAIN("wear")

@@ -2,32 +2,28 @@
  * Reading the result: zones with their ends between the nodes, slip distance
  * and direction, torque about an axis, loops of friction per contact.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 const int job_without_fields = 1;
 
 /* a = sqrt(4 P R / (pi E*)) of the line, cbrt(3 P R / (4 E*)) of the sphere. */
-START_TEST(radius_of_hertz_is_found_between_the_nodes) {
+TEST(radius_of_hertz_is_found_between_the_nodes) {
   const double pi = acos(-1.0), Es = 210e3 / 0.91;
   const double line = sqrt(4 * 1000.0 * 10 / (pi * Es));
   const double ball = cbrt(3 * 1000.0 * 10 / (4 * Es));
   /* Meshes whose nodes lie elsewhere against the edge of the contact. */
   static const double part[] = {1.0, 1.013, 1.03, 1.045};
   for (int k = 0; k < 4; ++k) {
-    char words[80];
-    snprintf(words, sizeof words, "-D NC=24 -D A=%.17g", line * part[k]);
-    job j = job_deck("input/hertz_line/hertz_block", words);
-    dat z = job_table(&j, "ZONES", -1);
+    PRINTED(words, "-D NC=24 -D A=%.17g", line * part[k]);
+    JOB j = job_deck("input/hertz_line/hertz_block", words);
+    DAT z = job_table(&j, "ZONES", -1);
     ck_assert_int_eq(z.n_row, 2);
     int closed = dat_zone(&z, 1);
     ck_assert_double_eq_tol(dat_at(&z, closed, "x_from"), 0.0, 1e-12);
     ck_assert_double_eq_tol(dat_at(&z, closed, "x_to"), line, 0.2 * line / 24);
     ck_assert_double_eq_tol(dat_at(&z, closed, "extent"),
                             dat_at(&z, closed, "area"), 1e-12);
-    dat_free(&z);
-    job_end(&j);
   }
   job j = job_deck("input/hertz_sphere/hertz_sphere", "-D NC=24");
   dat z = job_table(&j, "ZONES", -1);
@@ -47,56 +43,50 @@ START_TEST(radius_of_hertz_is_found_between_the_nodes) {
   dat_free(&z);
   job_end(&j);
 }
-END_TEST
 
 /* Square of the side 1 with the foot on a plane that moves by "way" along x,
  * pressed by p = 1, glued to its head; and what follows *STEP. */
 static job run_square(const char *shape, const char *pair, double mu,
                       const char *step) {
-  job j = job_begin("square");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "square.inp",
-            "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
-            "THICKNESS=2\n*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n%.17g\n"
-            "*STEP\n*STATIC\n1E-9\n*BOUNDARY\nTOP, 1, 1\nTOP, 2, 2, -0.001\n"
-            "*END STEP\n*STEP\n%s*PRINT, CONTACT, TOTALS, ZONES, LOOP\n"
-            "*END STEP\n",
-            shape, pair, mu, step);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job j =
+      job_with("square", "tests/regression/mesh/square.geo",
+               "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+               "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+               "THICKNESS=2\n*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+               "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
+               "*FRICTION, CONTACT=C, LAW=COULOMB\n%.17g\n"
+               "*STEP\n*STATIC\n1E-9\n*BOUNDARY\nTOP, 1, 1\nTOP, 2, 2, -0.001\n"
+               "*END STEP\n*STEP\n%s*PRINT, CONTACT, TOTALS, ZONES, LOOP\n"
+               "*END STEP\n",
+               shape, pair, mu, step);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 
 /* Nothing slips: one zone over the whole foot, twice as large as long for the
  * thickness 2. */
-START_TEST(one_zone_reaches_from_end_to_end) {
-  job j = run_square("", "", 1.0, "*QUASISTATIC\n1., 1.\n");
-  dat z = job_table(&j, "ZONES", -1);
+TEST(one_zone_reaches_from_end_to_end) {
+  JOB j = run_square("", "", 1.0, "*QUASISTATIC\n1., 1.\n");
+  DAT z = job_table(&j, "ZONES", -1);
   ck_assert_int_eq(z.n_row, 1);
   ck_assert_double_eq(dat_at(&z, 0, "zone"), 2.0);
   ck_assert_double_eq_tol(dat_at(&z, 0, "x_from"), 0.0, 1e-14);
   ck_assert_double_eq_tol(dat_at(&z, 0, "x_to"), 1.0, 1e-14);
   ck_assert_double_eq_tol(dat_at(&z, 0, "extent"), 1.0, 1e-14);
   ck_assert_double_eq_tol(dat_at(&z, 0, "area"), 2.0, 1e-14);
-  dat_free(&z);
-  job_end(&j);
 }
-END_TEST
 
 /*
  * A belt runs to 0.5, back to -0.5, and again: every node slips along with
  * it, mu p = 0.1, once the block has sheared by at most 0.01. Slip distance is
  * the way less the shearing; heat is force times slip.
  */
-START_TEST(belt_gives_slip_distance_direction_torque_and_loop) {
+TEST(belt_gives_slip_distance_direction_torque_and_loop) {
   job j = run_square("MOVE, \"0.5*(t<1)*t + 0.5*(t>=1)*(2-t)\", 0.\n",
                      "AXIS, 0.25, 2.\n", 0.1, "*QUASISTATIC\n0.05, 3.\n");
   const double N = 2.0, T = 0.2;
   dat c = job_table(&j, "CONTACT", 19), l = job_table(&j, "LOOP", 19);
-  dat t = job_table(&j, "TOTALS", 19), z = job_table(&j, "ZONES", 19);
+  DAT t = job_table(&j, "TOTALS", 19), z = job_table(&j, "ZONES", 19);
   double mean = 0.0;
   ck_assert_int_eq(z.n_row, 1);
   for (int i = 0; i < c.n_row; ++i) {
@@ -119,8 +109,6 @@ START_TEST(belt_gives_slip_distance_direction_torque_and_loop) {
   ck_assert_double_eq_tol(dat_at(&l, 0, "loop_area"), T * (0.5 - mean), 1e-6);
   dat_free(&c);
   dat_free(&l);
-  dat_free(&t);
-  dat_free(&z);
   /* Back: the force has turned; all the way has become heat but for the
    * shearing to and fro. */
   l = job_table(&j, "LOOP", -1);
@@ -131,7 +119,6 @@ START_TEST(belt_gives_slip_distance_direction_torque_and_loop) {
   dat_free(&l);
   job_end(&j);
 }
-END_TEST
 
 /*
  * A disc in a bore of its own size, pulled down, or to its first node: it
@@ -140,7 +127,7 @@ END_TEST
  * the polygon of 64 sides.
  */
 static void check_ring(const char *pull, const char *across) {
-  job j = job_begin("ring");
+  JOB j = job_begin("ring");
   job_write(&j, "ring.geo",
             "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {-1, 0, 0};"
             "Circle(1) = {2, 1, 3}; Circle(2) = {3, 1, 2};\n"
@@ -157,9 +144,8 @@ static void check_ring(const char *pull, const char *across) {
             "*FRICTION, CONTACT=C, LAW=COULOMB\n0.2\n*STEP\n*STATIC\n"
             "*BOUNDARY\nHUB, %s\n*DLOAD\nBODY, %s\n*PRINT, ZONES\n*END STEP\n",
             across, pull);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  dat z = job_table(&j, "ZONES", -1);
+  CK_EXIT(job_run(&j, ""), 0, j);
+  DAT z = job_table(&j, "ZONES", -1);
   ck_assert_int_ge(z.n_row, 3);
   for (int i = 0; i < z.n_row; ++i) {
     int next = (i + 1) % z.n_row;
@@ -176,49 +162,37 @@ static void check_ring(const char *pull, const char *across) {
   }
   ck_assert_double_eq_tol(dat_sum(&z, "extent"), 128 * sin(acos(-1.0) / 64),
                           1e-9);
-  dat_free(&z);
-  job_end(&j);
 }
 
-START_TEST(zones_of_a_ring_close) {
+TEST(zones_of_a_ring_close) {
   check_ring("BY, -10.", "1");
   check_ring("BX, 10.", "2");
 }
-END_TEST
 
 /* Nothing slips: the zone of stick ends where the contact does, though the
  * limit that is left grows towards the edge. Under an even pressure the square
  * of a limit that ends at x = 0.65 is linear, and so its zone is exact. */
-START_TEST(stick_ends_where_the_contact_or_the_limit_does) {
+TEST(stick_ends_where_the_contact_or_the_limit_does) {
   static const char *const gap[] = {"0.01*(x - 0.6)", "-0.001"};
   static const char *const mu[] = {"1 + 9*x", "sqrt(max(0, 0.65 - x))"};
   for (int k = 0; k < 2; ++k) {
-    job j = job_begin("cube");
-    job_copy(&j, "tests/regression/mesh/cube.geo");
-    job_write(&j, "cube.inp",
-              "*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
-              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-              "*OBSTACLE, NAME=O, TYPE=GAP\n\"%s\"\n"
-              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-              "*FRICTION, CONTACT=C, LAW=COULOMB\n\"%s\"\n*STEP\n*STATIC\n"
-              "*BOUNDARY\nTOP, 1, 3\n*PRINT, ZONES\n*END STEP\n",
-              gap[k], mu[k]);
-    int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-    dat z = job_table(&j, "ZONES", -1);
+    JOB j = job_with(
+        "cube", "tests/regression/mesh/cube.geo",
+        "*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+        "*OBSTACLE, NAME=O, TYPE=GAP\n\"%s\"\n"
+        "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+        "*FRICTION, CONTACT=C, LAW=COULOMB\n\"%s\"\n*STEP\n*STATIC\n"
+        "*BOUNDARY\nTOP, 1, 3\n*PRINT, ZONES\n*END STEP\n",
+        gap[k], mu[k]);
+    CK_EXIT(job_run(&j, ""), 0, j);
+    DAT z = job_table(&j, "ZONES", -1);
     double slip = dat_at(&z, dat_zone(&z, 1), "area");
     double stick = dat_at(&z, dat_zone(&z, 2), "area");
     ck_assert_double_eq_tol(slip, k == 0 ? 0 : 0.35, 1e-12);
     ck_assert_double_eq_tol(stick, k == 0 ? stick : 0.65, 1e-12);
     ck_assert_double_gt(stick, 0.25);
-    dat_free(&z);
-    job_end(&j);
   }
 }
-END_TEST
 
-UNIT_MAIN("zones", zones_of_a_ring_close,
-          radius_of_hertz_is_found_between_the_nodes,
-          one_zone_reaches_from_end_to_end,
-          belt_gives_slip_distance_direction_torque_and_loop,
-          stick_ends_where_the_contact_or_the_limit_does)
+UNIT_MAIN("zones")

@@ -9,12 +9,9 @@
  *
  * EFFECTS_SCENES=n,first: how many, from which on.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <stdarg.h>
 
 enum { ROOM = 6000 };
 
@@ -289,14 +286,12 @@ static double difference(const job *a, const job *b) {
   for (size_t q = 0; q < sizeof quantities / sizeof *quantities; ++q)
     for (int k = 0; k < n; ++k) {
       const quantity_row *row = &quantities[q];
-      dat p = job_table(a, row->table, k), r = job_table(b, row->table, k);
+      DAT p = job_table(a, row->table, k), r = job_table(b, row->table, k);
       span own = compare(&p, &r, row->name);
       double scale = own.largest;
       if (row->scale != NULL)
         scale = fmax(scale, compare(&r, &r, row->scale).largest);
       if (own.change > row->rounding) worst = fmax(worst, own.change / scale);
-      dat_free(&p);
-      dat_free(&r);
     }
   return worst;
 }
@@ -309,19 +304,18 @@ static int run(job *j, const scene *s, const char *mode) {
 
 /* Rows "left out" of the listing. */
 static int left_out(const job *j) {
-  char *text = job_file(j, "lst");
+  FREED char *text = job_file(j, "lst");
   int n = 0;
   for (const char *at = text;
        at != NULL && (at = strstr(at, "\n  left out: ")) != NULL; ++at)
     ++n;
-  free(text);
   return n;
 }
 
 /* How many rows AUTO leaves out. */
 static int check_scene(unsigned number) {
   static scene s;
-  job a = job_begin("block"), b = job_begin("block");
+  JOB a = job_begin("block"), b = job_begin("block");
   int n = 0;
   make_scene(&s, number, &a);
   make_scene(&s, number, &b);
@@ -333,12 +327,10 @@ static int check_scene(unsigned number) {
     const double found = difference(&a, &b);
     ck_assert_msg(found <= s.tol, "scene %u: %g", number, found);
   }
-  job_end(&a);
-  job_end(&b);
   return n;
 }
 
-START_TEST(answers_are_those_of_all_effects) {
+TESTS(answers_are_those_of_all_effects, 1) {
   const char *text = getenv("EFFECTS_SCENES");
   unsigned count = 300, first = 0;
   int rows = 0, scenes = 0;
@@ -351,6 +343,5 @@ START_TEST(answers_are_those_of_all_effects) {
   printf("effects left out: %d in %d of %u scenes\n", rows, scenes, count);
   ck_assert_int_gt(scenes, 0);
 }
-END_TEST
 
-UNIT_LOOP("effects_auto", answers_are_those_of_all_effects, 1)
+UNIT_MAIN_FOR("effects_auto", 10 * UNIT_SECONDS)

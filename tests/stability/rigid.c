@@ -9,24 +9,21 @@
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
-#include <string.h>
-
 /* Violation of a claim to 1e-8; 1.9e-8 at most. */
 static const double MISSES = 1e-7;
 
 static int is_solved(const rigid_scene *s) {
-  contact_case c = rigid_case(s);
+  CONTACT_CASE c = rigid_case(s);
   memcpy(c.u, c.f, (size_t)s->m * sizeof *c.u);
   solver_report rep = solve_by(NULL, &c, 1e-8, c.u, c.r);
   int solved = rep.outcome == CONVERGED;
   double bad = solved ? rigid_violation(s, &c) : 0.0;
   ck_assert_msg(bad <= MISSES, "claims a violation of %g", bad);
-  case_free(&c);
   return solved;
 }
 
 /* _i: the kind of scene */
-START_TEST(scenes_of_rigid_bodies_are_solved) {
+TESTS(scenes_of_rigid_bodies_are_solved, RIGID_KINDS) {
   static const int sizes[] = {1, 3, 8, 15};
   static const double mus[] = {0.0, 0.3, 1.0};
   rigid_kind kind = (rigid_kind)_i;
@@ -36,7 +33,7 @@ START_TEST(scenes_of_rigid_bodies_are_solved) {
       for (int way = 0; way < 12; ++way) {
         int dim = 2 + way % 2, disturbed = way / 2 % 2;
         unsigned long long seed = 1 + (unsigned)way / 4;
-        rigid_scene s = rigid_new(kind, dim, per * sizes[k], mus[a], seed);
+        RIGID_SCENE s = rigid_new(kind, dim, per * sizes[k], mus[a], seed);
         if (disturbed) rigid_disturb(&s, 1e-3, seed);
         int solved = is_solved(&s);
         ck_assert_msg(solved || disturbed,
@@ -44,11 +41,9 @@ START_TEST(scenes_of_rigid_bodies_are_solved) {
                       rigid_name(kind), dim, per * sizes[k], mus[a], seed);
         tried += disturbed;
         missed += !solved;
-        rigid_free(&s);
       }
   ck_assert_msg(missed * 100 <= 2 * tried, "%s: %d of %d not solved",
                 rigid_name(kind), missed, tried);
 }
-END_TEST
 
-UNIT_LOOP("rigid", scenes_of_rigid_bodies_are_solved, RIGID_KINDS)
+UNIT_MAIN_FOR("rigid", 10 * UNIT_SECONDS)

@@ -4,7 +4,6 @@
 #include "scenes/scenes.h"
 #include "support/unit.h"
 
-START_TEST(no_scene_fails) { ck_assert_int_eq(scenes_run(0, stdout), 0); }
-END_TEST
+TESTS(no_scene_fails, 1) { ck_assert_int_eq(scenes_run(0, stdout), 0); }
 
-UNIT_LOOP("scenes", no_scene_fails, 1)
+UNIT_MAIN_FOR("scenes", 10 * UNIT_SECONDS)

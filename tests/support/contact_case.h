@@ -5,6 +5,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "contact/contact.h"
 
 /* A problem that owns its arrays; change them before it is solved. */
@@ -23,6 +24,8 @@ void case_units(contact_case *c, int length, int force);
 /* n nodes, all zero, B = diag(mu); frictionless (g0, ut0, B NULL) if mu = 0. */
 contact_case case_new(int dim, int n, double mu);
 void case_free(contact_case *c);
+/* CONTACT_CASE c = ...: freed where the name ends. */
+#define CONTACT_CASE ENDS_BY(case_free) contact_case
 /* kind 0: A = G G'/m + 0.2 I, G random; 1: a chain of springs with normal and
  * tangential motion coupled. Loads, gaps and stick positions random. */
 contact_case case_any(int dim, int n, double mu, int kind,

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "fracture/fracture.h"
 
 /* A vector at y[3], coordinates in which the mesh was made: the crack is where
@@ -35,3 +36,5 @@ void scene_load(crack_scene *s, crack_field *field, const void *ctx);
 fracture_factors *scene_factors(const crack_scene *s, int *n,
                                 fracture_point **points);
 void scene_end(crack_scene *s);
+/* CRACK_SCENE s = ...: ends where the name does. */
+#define CRACK_SCENE ENDS_BY(scene_end) crack_scene

@@ -1,7 +1,6 @@
 /*
  * The deck of the creeping block and its runs.
  */
-#include "base/base.h"
 #include "effects/rows.h"
 #include "run/history/history.h"
 #include "support/creep_case.h"

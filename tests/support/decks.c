@@ -3,7 +3,6 @@
  */
 #include "support/decks.h"
 
-#include "base/base.h"
 #include "support/folder.h"
 #include "support/unit.h"
 

@@ -2,7 +2,6 @@
 
 #include "support/unit.h"
 
-#include <stdio.h>
 #include <fcntl.h>
 #include <unistd.h>
 

@@ -1,6 +1,5 @@
 #include "support/faces.h"
 
-#include "base/base.h"
 #include "support/unit.h"
 
 void faces_begin(face_scene *c, int dim) {

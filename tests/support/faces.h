@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "contact/surface.h"
 
 enum { FACES_MAX = 600, FACES_GROUPS = 8 };
@@ -25,6 +26,8 @@ typedef struct face_scene {
 
 void faces_begin(face_scene *c, int dim);
 void faces_end(face_scene *c);
+/* FACE_SCENE c = ...: ends where the name does. */
+#define FACE_SCENE ENDS_BY(faces_end) face_scene
 /* Their ids. */
 int faces_node(face_scene *c, double x, double y, double z);
 int faces_face(face_scene *c, int a, int b, int d);

@@ -1,6 +1,5 @@
 #include "support/fclib_file.h"
 
-#include "base/base.h"
 #include "support/unit.h"
 
 hid_t fclib_begin(const char *path) {

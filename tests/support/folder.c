@@ -35,6 +35,8 @@ void folder_remove(const char *path) {
   ck_assert_int_eq(nftw(path, discard, 8, FTW_PHYS | FTW_DEPTH), 0);
 }
 
+void folder_leave(char (*path)[64]) { folder_remove(*path); }
+
 char *file_read(const char *path, size_t *size) {
   FILE *f = fopen(path, "rb");
   if (f == NULL) return NULL;

@@ -1,7 +1,6 @@
 /* Decks with *GOAL (goal_body.h). */
 #include "support/goal_body.h"
 
-#include "base/base.h"
 #include "support/unit.h"
 
 void body_write_mesh(const job *j, const char *words,
@@ -25,8 +24,7 @@ job body_of_type(const char *type, const char *words, const char *cards) {
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
             "*OBSTACLE, NAME=O, TYPE=%s*PRINT, GOALS\n*END STEP\n",
             type, cards);
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, ""), 0, j);
   return j;
 }
 

@@ -6,17 +6,13 @@
 
 #include "support/folder.h"
 #include "support/kept_mesh.h"
+#include "support/unit.h"
 
-#include <check.h>
 #include <ctype.h>
 #include <fcntl.h>
 #include <glob.h>
-#include <math.h>
 #include <spawn.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -47,23 +43,40 @@ static void write_deck(FILE *f, const char *deck) {
   fputs(end, f);
 }
 
-void job_write(const job *j, const char *file, const char *format, ...) {
+static void write_file(const job *j, const char *file, const char *format,
+                       va_list args) {
   char path[PATH], *text = NULL;
   size_t size;
-  va_list args;
   snprintf(path, sizeof path, "%s/%s", j->dir, file);
   FILE *f = fopen(path, "w"), *memory = open_memstream(&text, &size);
   ck_assert(f != NULL && memory != NULL);
-  va_start(args, format);
   vfprintf(memory, format, args);
-  va_end(args);
   fclose(memory);
   write_deck(f, text);
   free(text);
   ck_assert_int_eq(fclose(f), 0);
 }
 
+void job_write(const job *j, const char *file, const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  write_file(j, file, format, args);
+  va_end(args);
+}
+
 void job_copy(const job *j, const char *path) { folder_copy(j->dir, path); }
+
+job job_with(const char *name, const char *mesh, const char *format, ...) {
+  job j = job_begin(name);
+  char deck[64];
+  va_list args;
+  if (mesh != NULL) job_copy(&j, mesh);
+  snprintf(deck, sizeof deck, "%s.inp", name);
+  va_start(args, format);
+  write_file(&j, deck, format, args);
+  va_end(args);
+  return j;
+}
 
 void job_copy_meshes(const job *j, const char *deck) {
   static const char *const patterns[] = {"*.geo", "*.msh"};
@@ -148,21 +161,21 @@ static void check_sum(const char *stages) {
   ck_assert_double_le(fabs(cpu - sum), most);
 }
 
-long job_stage(const job *j, const char *stage, long *bytes) {
+long job_stage(const job *j, const char *name, long *bytes) {
   char *text = job_file(j, "lst"), *end;
   ck_assert_ptr_nonnull(text);
   const char *all = strstr(text, "COST\n"),
-             *at = all == NULL ? NULL : strstr(all, stage);
-  ck_assert_msg(at != NULL, "no stage '%s'", stage);
+             *at = all == NULL ? NULL : strstr(all, name);
+  ck_assert_msg(at != NULL, "no stage '%s'", name);
   check_sum(all);
-  long calls = strtol(at + strlen(stage), &end, 10);
+  long calls = strtol(at + strlen(name), &end, 10);
   strtod(end, &end);
   if (bytes != NULL) *bytes = strtol(end, NULL, 10);
   free(text);
   return calls;
 }
 
-static const char *program(void) {
+const char *job_program(void) {
   const char *p = getenv("PROTIS");
   return p == NULL ? "build/release/protis" : p;
 }
@@ -278,7 +291,7 @@ static int run_program(job *j, const char *dir, const char *command) {
 /* The program with its full path. */
 static void find_program(char *path) {
   char cwd[PATH];
-  const char *p = program();
+  const char *p = job_program();
   if (p[0] == '/') {
     snprintf(path, PATH, "%s", p);
     return;
@@ -559,4 +572,38 @@ double job_unknowns(const job *j) {
   const double value = atof(last + 12);
   free(json);
   return value;
+}
+
+double job_value(const job *j, const char *kind, int k, const char *name) {
+  DAT d = job_table(j, kind, k);
+  return dat_at(&d, 0, name);
+}
+
+double job_sum(const job *j, const char *kind, int k, const char *name) {
+  DAT d = job_table(j, kind, k);
+  return dat_sum(&d, name);
+}
+
+double job_max(const job *j, const char *kind, int k, const char *name) {
+  DAT d = job_table(j, kind, k);
+  return dat_max(&d, name);
+}
+
+double job_potential(const job *j, double *strain) {
+  DAT e = job_table(j, "ENERGY", -1);
+  *strain = dat_at(&e, 0, "strain_energy");
+  return *strain - 2.0 * dat_at(&e, 0, "external_work");
+}
+
+int job_tells(const job *j, const char *text) {
+  FREED char *lst = job_file(j, "lst");
+  ck_assert_ptr_nonnull(lst);
+  return strstr(lst, text) != NULL;
+}
+
+double job_cpu(void) {
+  struct rusage r;
+  ck_assert_int_eq(getrusage(RUSAGE_CHILDREN, &r), 0);
+  return (double)(r.ru_utime.tv_sec + r.ru_stime.tv_sec) +
+         1e-6 * (double)(r.ru_utime.tv_usec + r.ru_stime.tv_usec);
 }

@@ -6,6 +6,8 @@
  */
 #pragma once
 
+#include "base/memory.h"
+
 #include <stddef.h>
 
 typedef struct job {
@@ -29,6 +31,9 @@ void job_preload(const char *name);
 /* A new empty folder; check fails if that is not possible. */
 job job_begin(const char *name);
 void job_end(job *j);
+/* JOB j = ...: it ends where the name does; likewise DAT, and others below
+ * tests. */
+#define JOB ENDS_BY(job_end) job
 /* Defined by programs whose decks write no fields, a third of a small run,
  * unless they say *OUTPUT. */
 extern const int job_without_fields __attribute__((weak));
@@ -37,6 +42,10 @@ void job_write(const job *j, const char *file, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Copy a file of the sources into the folder under its own name. */
 void job_copy(const job *j, const char *path);
+/* A new folder with the deck NAME.inp, printf format, and a file of the
+ * sources, or NULL. */
+job job_with(const char *name, const char *mesh, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* Copy the .geo and .msh files beside a deck of the sources. */
 void job_copy_meshes(const job *j, const char *deck);
 /* Of an example, "input/x/x"; caller frees. */
@@ -50,6 +59,13 @@ const char *job_contradiction(const job *j, int code);
 /* Run protis NAME with further words ("" or "-D N=4 --check"); exit code,
  * or 1000 + signal. The check fails if the files of a run have another. */
 int job_run(job *j, const char *words);
+/* Check fails, with what the program printed, unless a run ends with that exit
+ * code. */
+#define CK_EXIT(run, wanted, j)                                         \
+  do {                                                                  \
+    const int code_ = (run);                                            \
+    ck_assert_msg(code_ == (wanted), "exit %d: %s", code_, (j).errors); \
+  } while (0)
 /* Run a command of the shell in the folder, "protis" being the program; its
  * exit code. */
 int job_shell(job *j, const char *command);
@@ -73,7 +89,7 @@ int job_has(const job *j, const char *suffix);
 void job_clear(const job *j);
 /* Calls of a stage in the closing table of the listing; *bytes or NULL: what it
  * asked for. Check fails if the stage is not there. */
-long job_stage(const job *j, const char *stage, long *bytes);
+long job_stage(const job *j, const char *name, long *bytes);
 /* The last number of that name in JOB.json; check fails if there is none. */
 double job_told(const job *j, const char *name);
 /* Unknowns of the last pass of TARGET=. */
@@ -86,6 +102,7 @@ double job_difference(const job *a, const job *b, int k);
  * check fails if there is none. */
 dat job_table(const job *j, const char *kind, int k);
 void dat_free(dat *d);
+#define DAT ENDS_BY(dat_free) dat
 int dat_column(const dat *d, const char *name); /* check fails if absent      */
 int dat_has(const dat *d, const char *name); /* 1: the column is there        */
 double dat_at(const dat *d, int row, const char *name);
@@ -93,3 +110,13 @@ double dat_at(const dat *d, int row, const char *name);
 int dat_row_near(const dat *d, const char *name, double value);
 double dat_sum(const dat *d, const char *name);
 double dat_max(const dat *d, const char *name); /* largest magnitude          */
+/* The same of block k of a table of JOB.dat; value: of its first row. */
+double job_value(const job *j, const char *kind, int k, const char *name);
+double job_sum(const job *j, const char *kind, int k, const char *name);
+double job_max(const job *j, const char *kind, int k, const char *name);
+/* Potential energy of one increment from rest: E - F'u, F'u twice the
+ * trapezoidal work. */
+double job_potential(const job *j, double *strain);
+int job_tells(const job *j, const char *text); /* 1: JOB.lst has the text */
+double job_cpu(void);                          /* of jobs so far, s */
+const char *job_program(void);

@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include "base/memory.h"
+
 typedef enum {
   LCP_TIES_IN_TURN, /* 1 and 2 beside it, q = -1: first-index rules cycle   */
   LCP_MURTY,        /* lower triangle of twos: 2^n pivots                   */
@@ -35,6 +37,8 @@ typedef struct lcp_case {
 
 lcp_case lcp_make(lcp_family family, int n, unsigned long long seed);
 void lcp_case_free(lcp_case *c);
+/* LCP_CASE c = ...: freed where the name ends. */
+#define LCP_CASE ENDS_BY(lcp_case_free) lcp_case
 const char *lcp_name(lcp_family family);
 /* Largest violation of w = q + M z, w >= 0, z >= 0, w z = 0; w in units of
  * the largest |q|, z in those of the largest |q| over that of |M|. */

@@ -194,3 +194,5 @@ void made_up_free(made_up *run) {
   memory_free(run->status);
   memory_free(run);
 }
+
+void made_up_leave(made_up *const *run) { made_up_free(*run); }

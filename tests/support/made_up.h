@@ -6,6 +6,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "run/effect.h"
 #include "run/history/history.h"
 
@@ -50,6 +51,9 @@ typedef struct made_up {
  * memory. All tables at every increment, fields at every increment. */
 made_up *made_up_new(int dim, int cells, int n_increment);
 void made_up_free(made_up *run);
+/* MADE_UP *run = ...: freed where the name ends. */
+void made_up_leave(made_up *const *run);
+#define MADE_UP ENDS_BY(made_up_leave) made_up
 /* The state of increment total_no, from 1; the last ends the step. */
 void made_up_advance(made_up *run, int total_no);
 /* What the state holds in item of an array. */

@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "mesh/mesh.h"
 
 /* A .msh of version 2.2 in ASCII from the lines of its three parts. */
@@ -31,6 +32,8 @@ typedef struct mesh_file {
 
 void mesh_file_open(mesh_file *f);  /* new folder                           */
 void mesh_file_close(mesh_file *f); /* removed with all in it               */
+/* MESH_FILE f: closed where the name ends. */
+#define MESH_FILE ENDS_BY(mesh_file_close) mesh_file
 /* FOLDER/NAME; the same buffer at every call. */
 const char *mesh_file_path(const mesh_file *f, const char *name);
 void mesh_file_write(const mesh_file *f, const char *name, const void *data,

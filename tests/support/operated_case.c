@@ -1,7 +1,6 @@
 /* A contact problem whose stiffness is an operator (operated_case.h). */
 #include "support/operated_case.h"
 
-#include "base/base.h"
 #include "solver/choice/choice.h"
 #include "support/unit.h"
 

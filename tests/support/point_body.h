@@ -5,6 +5,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "material/scheme/scheme.h"
 #include "support/law_case.h"
 
@@ -35,6 +36,8 @@ typedef struct point_input {
 void point_body_new(const point_input *in, const point_drive *drive,
                     point_body *b);
 void point_body_free(point_body *b);
+/* POINT_BODY b = ...: freed where the name ends. */
+#define POINT_BODY ENDS_BY(point_body_free) point_body
 /* n steps of one length up to time t; of estimates[n], if any, the errors. */
 void point_body_run(point_body *b, const scheme *s, double theta, double t,
                     int n, double *estimates);

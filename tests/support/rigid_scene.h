@@ -10,6 +10,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "support/contact_case.h"
 
 typedef enum {
@@ -32,6 +33,8 @@ typedef struct rigid_scene {
 rigid_scene rigid_new(rigid_kind kind, int dim, int size, double mu,
                       unsigned long long seed);
 void rigid_free(rigid_scene *s);
+/* RIGID_SCENE s = ...: freed where the name ends. */
+#define RIGID_SCENE ENDS_BY(rigid_free) rigid_scene
 const char *rigid_name(rigid_kind kind);
 /* Every entry of W off by up to half the share of it, as in a file whose W is
  * unsymmetric. */

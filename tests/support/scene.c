@@ -49,6 +49,8 @@ void scene_free(scene *s) {
   free(s);
 }
 
+void scene_leave(scene *const *s) { scene_free(*s); }
+
 static const mesh_group *find(const scene *s, const char *group) {
   for (int g = 0; g < s->m->n_group; ++g)
     if (strcmp(s->m->group[g].name, group) == 0) return &s->m->group[g];
@@ -212,4 +214,40 @@ void scene_dense(const scene *s, double *K) {
         for (int a = 0; a < dim; ++a) K[first + step * (size_t)a] = v[a];
       }
   }
+}
+
+scene *scene_two_bodies(void) {
+  OWNED mesh *a = make_grid_2d((int[]){3, 3}, (double[]){1, 1});
+  mesh *b = grid_join(a, a, (double[]){2, 0.25});
+  scene *s = scene_new(b, PLANE_STRAIN, 2);
+  const int contact[] = {1, 2, 17, 18, 19}; /* feet of both */
+  b->group[0].n_node = 5;
+  memcpy(b->group[0].node_id, contact, sizeof contact);
+  scene_contact(s, "BODY", (double[]){0, -1}, 0);
+  for (int c = 0; c < 2; ++c) {
+    scene_fix_node(s, 12, c);
+    scene_fix_node(s, 15, c);
+  }
+  scene_fix_node(s, 16, 0);
+  return s;
+}
+
+scene *scene_floating_3d(void) {
+  scene *s = scene_new(make_grid_3d((int[]){3, 2, 2}, (double[]){1, 1, 2}),
+                       SOLID_3D, 5);
+  scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
+  return s;
+}
+
+status scene_whole_way(const domain *d, double *work, double *condition) {
+  OWNED stiffness *k = NULL;
+  condensed *c = NULL;
+  const int n = d->mesh->dim * d->mesh->n_node;
+  status st = stiffness_assemble(d, &k);
+  if (st == OK) st = condense(k, d, &c);
+  if (st == OK) st = condense_load(c, work, NULL, work + n);
+  if (st == OK) st = condense_recover(c, work + n, work + 2 * n);
+  if (st == OK && condition != NULL) *condition = condensed_condition(c);
+  condensed_free(c);
+  return st;
 }

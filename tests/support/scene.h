@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "fem/fem.h"
 #include "support/grid.h"
 
@@ -20,6 +21,9 @@ typedef struct scene {
 /* Takes the mesh over. E = young, nu = 0.3, no support, no contact. */
 scene *scene_new(mesh *m, kinematics kin, double young);
 void scene_free(scene *s);
+/* SCENE *s = ...: freed where the name ends. */
+void scene_leave(scene *const *s);
+#define SCENE ENDS_BY(scene_leave) scene
 /* Fix component c of the nodes of a side group. */
 void scene_fix(scene *s, const char *group, int c);
 void scene_fix_node(scene *s, int node_id, int c);
@@ -36,3 +40,11 @@ void scene_dense(const scene *s, double *K);
 void scene_unknowns(const scene *s, unsigned char *unknown);
 /* Reproducible numbers in [-1, 1]. */
 double scene_random(unsigned *seed);
+
+/* Two blocks of 3 x 3 squares side by side, clamped, their feet in contact. */
+scene *scene_two_bodies(void);
+/* A box that nothing but its contact holds. */
+scene *scene_floating_3d(void);
+/* Stiffness, condensation, recovery; work[3*dim*n_node]: load, condensed load,
+ * solution. *condition of the condensed matrix, or NULL. */
+status scene_whole_way(const domain *d, double *work, double *condition);

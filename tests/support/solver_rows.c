@@ -3,8 +3,6 @@
 
 #include "support/unit.h"
 
-#include <string.h>
-
 int solver_row(int i, const solver_ops **ops) {
   int n = 0;
   while (solver_list[n] != NULL) ++n;

@@ -3,22 +3,19 @@
  */
 #include "support/square_case.h"
 
-#include "base/base.h"
 #include "support/unit.h"
 
 job square_run(const square_case *s, int expected) {
   const int contact = strstr(s->model, "*CONTACT") != NULL;
-  job j = job_begin("square");
-  job_copy(&j, "tests/regression/mesh/square.geo");
-  job_write(&j, "square.inp",
-            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n%s\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
-            "%s*STEP\n*STATIC\n%s*PRINT, ELEMENTS, ENERGY, NODES%s\n"
-            "*END STEP\n*STEP\n%s*END STEP\n",
-            s->elastic, s->law, s->section, s->model, s->load,
-            contact ? ", CONTACT" : "", s->visco);
-  int code = job_run(&j, "--no-timing");
-  ck_assert_msg(code == expected, "exit %d: %s", code, j.errors);
+  job j = job_with(
+      "square", "tests/regression/mesh/square.geo",
+      "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+      "*ELASTIC\n%s\n%s*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+      "%s*STEP\n*STATIC\n%s*PRINT, ELEMENTS, ENERGY, NODES%s\n"
+      "*END STEP\n*STEP\n%s*END STEP\n",
+      s->elastic, s->law, s->section, s->model, s->load,
+      contact ? ", CONTACT" : "", s->visco);
+  CK_EXIT(job_run(&j, "--no-timing"), expected, j);
   return j;
 }
 

@@ -22,7 +22,7 @@ static int same_name(const char *row, const char *name) {
   return *row == *name;
 }
 
-static sum *find(sums *s, const char *name) {
+static sum_row *find(sums *s, const char *name) {
   for (int i = s->n - 1; i >= 0; --i)
     if (same_name(s->row[i].name, name)) return &s->row[i];
   if (s->n == s->capacity) {
@@ -30,8 +30,8 @@ static sum *find(sums *s, const char *name) {
     s->row = realloc(s->row, (size_t)s->capacity * sizeof *s->row);
     ck_assert_ptr_nonnull(s->row);
   }
-  sum *row = &s->row[s->n++];
-  *row = (sum){0};
+  sum_row *row = &s->row[s->n++];
+  *row = (sum_row){0};
   ck_assert_uint_lt(strlen(name), sizeof row->name);
   for (size_t i = 0; name[i] != '\0'; ++i)
     row->name[i] = name[i] == ' ' ? '_' : name[i];
@@ -39,7 +39,7 @@ static sum *find(sums *s, const char *name) {
 }
 
 /* Weights between 1 and 2 that do not repeat. What is no number counts as 0. */
-static void add(sum *row, double value) {
+static void add(sum_row *row, double value) {
   const double turns = 0.6180339887498949 * (double)row->count;
   const double weight = 1.0 + (turns - floor(turns));
   ++row->count;
@@ -174,7 +174,7 @@ static herr_t read_dataset(hid_t file, const char *path, const H5O_info_t *o,
     ck_assert_ptr_nonnull(x);
     ck_assert_int_ge(
         H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, x), 0);
-    sum *row = find(s, name);
+    sum_row *row = find(s, name);
     for (hssize_t i = 0; i < n; ++i) add(row, x[i]);
     free(x);
   }
@@ -251,7 +251,7 @@ void sums_free(sums *s) {
 void sums_spread(sums *a, const sums *b) {
   ck_assert_int_eq(a->n, b->n);
   for (int i = 0; i < a->n; ++i) {
-    sum *row = &a->row[i];
+    sum_row *row = &a->row[i];
     ck_assert_str_eq(row->name, b->row[i].name);
     ck_assert_msg(row->count == b->row[i].count || is_loose(row->name),
                   "%s: %ld numbers, elsewhere %ld", row->name, row->count,
@@ -272,9 +272,9 @@ void sums_write(const sums *s, const char *path) {
 }
 
 /* What is wrong with a line of the file, to "text"; 1: something is. */
-static int differs(const sums *s, int i, const sum *wanted, char *text,
+static int differs(const sums *s, int i, const sum_row *wanted, char *text,
                    size_t size) {
-  const sum *found = i < s->n ? &s->row[i] : NULL;
+  const sum_row *found = i < s->n ? &s->row[i] : NULL;
   if (found == NULL || strcmp(found->name, wanted->name) != 0)
     snprintf(text, size, "%s: in its place %s", wanted->name,
              found == NULL ? "nothing" : found->name);
@@ -295,7 +295,7 @@ void sums_check(const sums *s, const char *path) {
   FILE *file = fopen(path, "r");
   ck_assert_msg(file != NULL, "%s cannot be read", path);
   while (fgets(line, sizeof line, file) != NULL) {
-    sum wanted = {0};
+    sum_row wanted = {0};
     if (line[0] == '#') continue;
     ck_assert_msg(sscanf(line, "%111s %ld %lf %lf", wanted.name, &wanted.count,
                          &wanted.total, &wanted.tolerance) == 4,

@@ -11,14 +11,14 @@
 
 #include "support/job.h"
 
-typedef struct sum {
+typedef struct sum_row {
   char name[112];
   long count;
   double total, largest, tolerance;
-} sum;
+} sum_row;
 
 typedef struct sums {
-  sum *row; /* [n] in the order of their first numbers */
+  sum_row *row; /* [n] in the order of their first numbers */
   int n, capacity;
 } sums;
 

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
 #include "support/grid.h"
@@ -18,3 +19,5 @@ typedef struct text_model {
 /* Reads it; messages go to stdout if it fails. "msh" is then its own. */
 void text_model_read(text_model *s, const char *text, mesh *msh);
 void text_model_close(text_model *s);
+/* TEXT_MODEL s: closed where the name ends. */
+#define TEXT_MODEL ENDS_BY(text_model_close) text_model

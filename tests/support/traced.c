@@ -24,11 +24,6 @@
 
 enum { PATH = 512 };
 
-static const char *program(void) {
-  const char *p = getenv("PROTIS");
-  return p == NULL ? "build/release/protis" : p;
-}
-
 static struct sock_filter load(size_t offset) {
   return (struct sock_filter)BPF_STMT(BPF_LD | BPF_W | BPF_ABS,
                                       (unsigned)offset);
@@ -74,7 +69,7 @@ static pid_t start(const job *j, const char *const *words, int followed) {
   if (followed) raise(SIGSTOP); /* until the tracer is ready for the calls */
   if (followed && !stop_at_changes()) _exit(97);
   const char *second = words[0] == NULL ? NULL : words[1];
-  execl(program(), program(), deck, "--no-timing", words[0], second,
+  execl(job_program(), job_program(), deck, "--no-timing", words[0], second,
         (char *)NULL);
   _exit(99);
 }

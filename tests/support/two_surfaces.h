@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "contact/mortar/mortar.h"
 
 typedef struct pair {
@@ -17,6 +18,8 @@ typedef struct pair {
 /* Room for 4000 nodes and 8000 faces. */
 pair two_new(int dim);
 void two_free(pair *p);
+/* OWN_PAIR p = ...: freed where the name ends. */
+#define OWN_PAIR ENDS_BY(two_free) pair
 /* Their coupling, new (memory_free); at in.x, or where it is NULL at rest. */
 mortar *two_couple(pair *p);
 void two_add_face(pair *p, int of_slave, const int *node);

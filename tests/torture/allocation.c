@@ -7,7 +7,6 @@
  * library may do without (then all files are those of an undisturbed run) or
  * give up: 4, 5 or 7 with a message.
  */
-#include "base/base.h"
 #include "support/kept_mesh.h"
 #include "support/points.h"
 #include "support/small_job.h"
@@ -37,16 +36,14 @@ static const char *setting(const char *name, const char *usual) {
 }
 
 static void set_number(const char *name, long value) {
-  char text[32];
-  snprintf(text, sizeof text, "%ld", value);
+  PRINTED(text, "%ld", value);
   setenv(name, text, 1);
 }
 
 static void become_job(const job *j, const refusal *r) {
-  char deck[200], told[200], errors[200];
-  snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
-  snprintf(told, sizeof told, "%s/told", j->dir);
-  snprintf(errors, sizeof errors, "%s/stderr.txt", j->dir);
+  PRINTED(deck, "%s/%s", j->dir, j->name);
+  PRINTED(told, "%s/told", j->dir);
+  PRINTED(errors, "%s/stderr.txt", j->dir);
   int to = open(errors, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (dup2(to, STDERR_FILENO) < 0 || dup2(to, STDOUT_FILENO) < 0) _exit(99);
   set_number("REFUSE_AT", r->at);
@@ -151,17 +148,16 @@ static const struct {
              {"memory, libraries, one request", {.own = 0}, 2, 0.115},
              {"memory, libraries, from one on", {.always = 1}, 2, 0.115}};
 
-START_TEST(requests_are_refused) {
+TESTS(requests_are_refused, sizeof kinds / sizeof *kinds) {
   points t = {.kind = kinds[_i].kind};
   for (size_t k = 0; k < sizeof jobs / sizeof *jobs; ++k)
     starve(&t, k, kinds[_i].how, points_number(kinds[_i].few, kinds[_i].share));
   points_end(&t);
 }
-END_TEST
 
 /* In the process that reads the mesh: a failure of the mesh reader or want of
  * memory, or the mesh is as it was. */
-START_TEST(mesh_reader_is_starved) {
+TEST(mesh_reader_is_starved) {
   points t = {.kind = "memory, mesh reader"};
   kept_mesh(NULL);
   long n = points_number(4, 0.01);
@@ -183,7 +179,6 @@ START_TEST(mesh_reader_is_starved) {
   job_end(&whole);
   job_end(&j);
 }
-END_TEST
 
 /* Where HDF5 is linked into the program, its requests are not the program's:
  * the first and the last of its functions. */
@@ -202,10 +197,5 @@ static void tell_library(void) {
 
 int main(void) {
   tell_library();
-  TCase *tests = tcase_create("allocation");
-  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
-  tcase_add_loop_test(tests, requests_are_refused, 0,
-                      sizeof kinds / sizeof *kinds);
-  tcase_add_test(tests, mesh_reader_is_starved);
-  return unit_run("allocation", tests);
+  return unit_run("allocation", 100 * UNIT_SECONDS);
 }

@@ -19,7 +19,6 @@
 
 #include <errno.h>
 #include <glob.h>
-#include <string.h>
 
 enum { PATH = 300, WORDS = 20 };
 
@@ -27,12 +26,12 @@ enum { PATH = 300, WORDS = 20 };
 
 /* The program on the job with these words; what it says into j->errors. */
 static int run(job *j, const char *words, failing_end *end) {
-  char deck[PATH], told[PATH], text[PATH];
+  char deck[PATH];
   char *argv[WORDS] = {"protis", deck, "--no-timing"}, *save = NULL;
   int argc = 3;
   snprintf(deck, sizeof deck, "%s/%s.inp", j->dir, j->name);
-  snprintf(told, sizeof told, "%s/stderr.txt", j->dir);
-  snprintf(text, sizeof text, "%s", words);
+  PRINTED(told, "%s/stderr.txt", j->dir);
+  PRINTED(text, "%s", words);
   for (char *w = strtok_r(text, " ", &save); w != NULL && argc < WORDS - 1;
        w = strtok_r(NULL, " ", &save))
     argv[argc++] = w;
@@ -45,8 +44,7 @@ static int run(job *j, const char *words, failing_end *end) {
 }
 
 static void command(const job *j, const char *what) {
-  char line[2 * PATH];
-  snprintf(line, sizeof line, "cd '%s' && %s", j->dir, what);
+  PRINTED(line, "cd '%s' && %s", j->dir, what);
   ck_assert_int_eq(system(line), 0);
 }
 
@@ -94,9 +92,8 @@ static job discrete(void) {
 }
 
 static job example(const char *deck) {
-  char path[PATH];
   job j = job_begin(strrchr(deck, '/') + 1);
-  snprintf(path, sizeof path, "%s.inp", deck);
+  PRINTED(path, "%s.inp", deck);
   job_copy(&j, path);
   job_copy_meshes(&j, deck);
   return j;
@@ -144,10 +141,9 @@ static const char *litter(const job *j) {
 
 /* 1: they differ in room that could not be cut off in the end. */
 static int keeps_room(const char *suffix, const job *whole, const job *j) {
-  char one[PATH], other[PATH];
   struct stat a, b;
-  snprintf(one, sizeof one, "%s/%s.h5", whole->dir, whole->name);
-  snprintf(other, sizeof other, "%s/%s.h5", j->dir, j->name);
+  PRINTED(one, "%s/%s.h5", whole->dir, whole->name);
+  PRINTED(other, "%s/%s.h5", j->dir, j->name);
   return strcmp(suffix, "h5") == 0 && stat(one, &a) == 0 &&
          stat(other, &b) == 0 && b.st_size > a.st_size;
 }
@@ -257,10 +253,10 @@ static int is_tried(size_t k) {
          k % OFTEN == 0;
 }
 
-START_TEST(call_fails) {
+TEST(call_fails) {
   enum { OWN = sizeof scenes / sizeof *scenes };
   points t = {.kind = "calls"};
-  job meshes = job_begin("meshes");
+  JOB meshes = job_begin("meshes");
   failing_setup(meshes.dir);
   for (size_t k = 0; k < OWN; ++k)
     if (is_tried(k))
@@ -272,14 +268,7 @@ START_TEST(call_fails) {
     if (is_tried(k + OWN))
       try_scene(&t, call_decks[k].kind, from_deck(&call_decks[k]),
                 call_decks[k].words);
-  job_end(&meshes);
   points_end(&t);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("calls");
-  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
-  tcase_add_test(tests, call_fails);
-  return unit_run("calls", tests);
-}
+UNIT_MAIN_FOR("calls", 100 * UNIT_SECONDS)

@@ -7,7 +7,6 @@
  * DECKS=count,first: how many, from which seed on; DECKS_KEEP=1: what is lost
  * stays in its folder.
  */
-#include "base/base.h"
 #include "decks/twin.h"
 #include "support/points.h"
 #include "support/unit.h"
@@ -69,7 +68,6 @@ static void check_twins(tally *t, const random_deck *d, const job *j,
 static void check_deck(tally *t, unsigned long long seed, extent of) {
   random_deck d;
   const deck_text how = {.units = {1, 1, 1}};
-  char what[400];
   job j = job_begin("deck");
   deck_draw(seed, &d);
   deck_write(&d, &how, &j);
@@ -79,8 +77,7 @@ static void check_deck(tally *t, unsigned long long seed, extent of) {
   tables all = tables_read(&j);
   points_try(&t->judged);
   const char *error = j.errors == NULL ? "" : strstr(j.errors, "error");
-  snprintf(what, sizeof what, "exit %d: %.300s", code,
-           error == NULL ? j.errors : error);
+  PRINTED(what, "exit %d: %.300s", code, error == NULL ? j.errors : error);
   /* hardening by strain is stiff where there is next to none */
   if (code == 2 && strstr(what, "nor in 2^29 parts") != NULL)
     ++t->refused;
@@ -98,7 +95,7 @@ static void check_deck(tally *t, unsigned long long seed, extent of) {
   fflush(stdout);
 }
 
-START_TEST(random_decks_hold) {
+TEST(random_decks_hold) {
   static const char *const kind[TWINS] = {
       "random decks, 2 threads",  "random decks, units 2^k",
       "random decks, units 1000", "random decks, numbered again",
@@ -128,11 +125,5 @@ START_TEST(random_decks_hold) {
   for (int k = 0; k < TWINS; ++k) points_end(&t.twin[k]);
   points_end(&t.restart);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("decks");
-  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
-  tcase_add_test(tests, random_decks_hold);
-  return unit_run("decks", tests);
-}
+UNIT_MAIN_FOR("decks", 100 * UNIT_SECONDS)

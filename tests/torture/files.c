@@ -7,7 +7,6 @@
  * memory), or it did without and all files are those of an undisturbed run.
  * After a failure --restart gives these files too.
  */
-#include "base/base.h"
 #include "support/kept_mesh.h"
 #include "support/points.h"
 #include "support/small_job.h"
@@ -80,7 +79,7 @@ static void disturb(points *t, traced how, job *whole, job *j, long n) {
   kept_mesh(NULL);
 }
 
-START_TEST(file_cannot_be_changed) {
+TESTS(file_cannot_be_changed, sizeof faults / sizeof *faults) {
   points t = {.kind = faults[_i].kind};
   long n = points_number(1, 0.035 / (sizeof faults / sizeof *faults));
   const char *cards = "*RESTART\n";
@@ -96,6 +95,5 @@ START_TEST(file_cannot_be_changed) {
   }
   points_end(&t);
 }
-END_TEST
 
-UNIT_LOOP("files", file_cannot_be_changed, sizeof faults / sizeof *faults)
+UNIT_MAIN_FOR("files", 10 * UNIT_SECONDS)

@@ -3,7 +3,6 @@
  * --restart, killed itself or not, ends with the files of a run that nobody
  * disturbed. So it is after a second SIGINT, which ends a run at once.
  */
-#include "base/base.h"
 #include "support/kept_mesh.h"
 #include "support/points.h"
 #include "support/small_job.h"
@@ -20,19 +19,17 @@ static const char *const again[] = {"--restart", NULL};
 
 /* Increments told in JOB.sta: whole lines after the header; 0 without it. */
 static int told(const job *j) {
-  char *sta = job_file(j, "sta");
+  FREED char *sta = job_file(j, "sta");
   int n = -1;
   for (char *p = sta; p != NULL && (p = strchr(p, '\n')) != NULL; ++p) ++n;
-  free(sta);
   return n < 0 ? 0 : n;
 }
 
 /* Increments in JOB.h5; -1: it cannot be read. */
 static int kept(const job *j) {
   static double t[MOST];
-  char path[200];
   int n = 0;
-  snprintf(path, sizeof path, "%s/%s.h5", j->dir, j->name);
+  PRINTED(path, "%s/%s.h5", j->dir, j->name);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   hid_t set = file < 0 ? -1 : H5Dopen2(file, "/history/time", H5P_DEFAULT);
@@ -80,8 +77,8 @@ typedef job make_job(double mu, const char *cards, const char *method);
 /* n kills of a job, each followed by "again" kills of its restarts. */
 static void kill_often(points *t, points *twice, make_job *make,
                        const char *method, double mu, long n) {
-  job whole = make(mu, "*RESTART\n", method);
-  job j = make(mu, "*RESTART\n", method);
+  JOB whole = make(mu, "*RESTART\n", method);
+  JOB j = make(mu, "*RESTART\n", method);
   int changes, rest;
   kept_mesh(&whole);
   ck_assert_int_eq(run(&whole, nothing, 0, &changes), 0);
@@ -105,11 +102,9 @@ static void kill_often(points *t, points *twice, make_job *make,
                   changes, wrong, j.errors);
   }
   kept_mesh(NULL);
-  job_end(&whole);
-  job_end(&j);
 }
 
-START_TEST(killed_run_goes_on) {
+TEST(killed_run_goes_on) {
   points t = {.kind = "killed runs"}, twice = {.kind = "killed restarts"};
   long n = points_number(2, 0.0375);
   kill_often(&t, &twice, small_flat, "AUTO", 0.1, n);
@@ -119,7 +114,6 @@ START_TEST(killed_run_goes_on) {
   points_end(&t);
   points_end(&twice);
 }
-END_TEST
 
 /* A number of 1 .. all, the next of a row that begins anywhere. */
 static int at_random(unsigned long *row, int all) {
@@ -149,8 +143,8 @@ static const char *chain(const job *whole, job *j, unsigned long row,
 
 static void kill_in_chains(points *t, make_job *make, const char *method,
                            double mu) {
-  job whole = make(mu, "*RESTART\n", method);
-  job j = make(mu, "*RESTART\n", method);
+  JOB whole = make(mu, "*RESTART\n", method);
+  JOB j = make(mu, "*RESTART\n", method);
   long n = points_number(1, 0.005);
   int changes, kills, most = 0;
   kept_mesh(&whole);
@@ -166,11 +160,9 @@ static void kill_in_chains(points *t, make_job *make, const char *method,
   }
   ck_assert_int_ge(most, 1);
   kept_mesh(NULL);
-  job_end(&whole);
-  job_end(&j);
 }
 
-START_TEST(chain_of_kills_goes_on) {
+TEST(chain_of_kills_goes_on) {
   points t = {.kind = "chains of kills"};
   kill_in_chains(&t, small_flat, "AUTO", 0.1);
   kill_in_chains(&t, small_flat, "NEWTON", 10.0);
@@ -178,21 +170,18 @@ START_TEST(chain_of_kills_goes_on) {
   kill_in_chains(&t, small_creep, "INTEGRATOR=MIDPOINT", 1.0);
   points_end(&t);
 }
-END_TEST
 
-START_TEST(killed_over_old_results) {
+TEST(killed_over_old_results) {
   points t = {.kind = "killed over old results"};
-  job j = small_flat(0.4, "*RESTART\n", "AUTO");
+  JOB j = small_flat(0.4, "*RESTART\n", "AUTO");
   ck_assert_int_eq(run(&j, nothing, 0, NULL), 0);
   for (int at = 1; told(&j) > 0 || at == 1; ++at) {
     const char *wrong = after_kill(&j, run(&j, nothing, at, NULL));
     points_try(&t);
     if (wrong != NULL) points_lose(&t, "killed at change %d: %s", at, wrong);
   }
-  job_end(&j);
   points_end(&t);
 }
-END_TEST
 
 /* SIGINT at a change of a file and at the next one. */
 static const char *after_second(const job *j, int at, int *changes) {
@@ -209,8 +198,8 @@ static const char *after_second(const job *j, int at, int *changes) {
 }
 
 static void interrupt_twice(points *t, make_job *make, const char *method) {
-  job whole = make(0.4, "*RESTART\n", method);
-  job j = make(0.4, "*RESTART\n", method);
+  JOB whole = make(0.4, "*RESTART\n", method);
+  JOB j = make(0.4, "*RESTART\n", method);
   traced usual = {.action = TRACE_COUNT};
   int made;
   long n = points_number(1, 0.005);
@@ -227,24 +216,13 @@ static void interrupt_twice(points *t, make_job *make, const char *method) {
                   j.name, at, usual.changes, made, wrong);
   }
   kept_mesh(NULL);
-  job_end(&whole);
-  job_end(&j);
 }
 
-START_TEST(second_signal_ends_at_once) {
+TEST(second_signal_ends_at_once) {
   points t = {.kind = "second SIGINT"};
   interrupt_twice(&t, small_flat, "AUTO");
   interrupt_twice(&t, small_creep, "INTEGRATOR=MIDPOINT");
   points_end(&t);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("kills");
-  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
-  tcase_add_test(tests, killed_run_goes_on);
-  tcase_add_test(tests, killed_over_old_results);
-  tcase_add_test(tests, chain_of_kills_goes_on);
-  tcase_add_test(tests, second_signal_ends_at_once);
-  return unit_run("kills", tests);
-}
+UNIT_MAIN_FOR("kills", 100 * UNIT_SECONDS)

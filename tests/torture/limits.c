@@ -3,7 +3,6 @@
  * any size ends with exit code 5 and says so, or with the files of a run
  * without limit; more increments than five digits come to their end.
  */
-#include "base/base.h"
 #include "support/block_file.h"
 #include "support/points.h"
 #include "support/traced.h"
@@ -29,14 +28,13 @@ static job block(int squares, int increments) {
 
 /* Behind a command of the shell; exit code, or 1000 + signal. */
 static int run_behind(job *j, const char *first, const char *words) {
-  char line[800];
   const char *program = getenv("PROTIS");
   job told = *j;
   if (program == NULL) program = "build/release/protis";
-  snprintf(line, sizeof line,
-           "%s; exec '%s' '%s/%s' --no-timing --quiet %s > '%s/stdout.txt' "
-           "2> '%s/stderr.txt'",
-           first, program, j->dir, j->name, words, j->dir, j->dir);
+  PRINTED(line,
+          "%s; exec '%s' '%s/%s' --no-timing --quiet %s > '%s/stdout.txt' "
+          "2> '%s/stderr.txt'",
+          first, program, j->dir, j->name, words, j->dir, j->dir);
   int code = system(line);
   snprintf(told.name, sizeof told.name, "stderr");
   free(j->errors);
@@ -64,11 +62,11 @@ static int judge(points *t, const job *whole, const job *j, int code,
 }
 
 /* Sizes from what the libraries take to what the run is content with. */
-START_TEST(little_memory_is_told) {
+TESTS(little_memory_is_told, 2) {
   points t = {.kind = "little memory"};
   const int squares = _i == 0 ? 6 : 60;
   const long n = points_number(6, 0.01);
-  job whole = block(squares, 4), j = block(squares, 4);
+  JOB whole = block(squares, 4), j = block(squares, 4);
   char limit[60];
   long refused = 0;
   ck_assert_int_eq(run_behind(&whole, "true", ""), 0);
@@ -82,34 +80,22 @@ START_TEST(little_memory_is_told) {
   }
   points_end(&t);
   ck_assert(refused > 0 && refused < t.tried);
-  job_end(&whole);
-  job_end(&j);
 }
-END_TEST
 
 /* In the long run alone: minutes. */
-START_TEST(many_increments_end) {
+TEST(many_increments_end) {
   enum { MANY = 100001 };
   points t = {.kind = "increments, 100,001"};
   int lines = 0;
   if (getenv("PROTIS_POINTS") == NULL) return;
-  job j = block(1, MANY);
+  JOB j = block(1, MANY);
   int code = run_behind(&j, "true", "");
-  char *sta = job_file(&j, "sta");
+  FREED char *sta = job_file(&j, "sta");
   for (const char *p = sta; p != NULL && *p != '\0'; ++p) lines += *p == '\n';
   points_try(&t);
   if (code != 0 || lines != MANY + 1)
     points_lose(&t, "exit %d, %d lines: %.200s", code, lines, j.errors);
   points_end(&t);
-  free(sta);
-  job_end(&j);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("limits");
-  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
-  tcase_add_loop_test(tests, little_memory_is_told, 0, 2);
-  tcase_add_test(tests, many_increments_end);
-  return unit_run("limits", tests);
-}
+UNIT_MAIN_FOR("limits", 100 * UNIT_SECONDS)

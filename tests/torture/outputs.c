@@ -3,7 +3,6 @@
  * with other tables, fields and error estimates. The run ends as it does with
  * those of the deck, and its increments are the same to the last bit.
  */
-#include "base/base.h"
 #include "scenes/scenes.h"
 #include "support/asked.h"
 #include "support/points.h"
@@ -31,8 +30,7 @@ static char *prepare(const source *s, job *j) {
     scene_prepare(s->scene, j, text);
     return text;
   }
-  char name[32];
-  snprintf(name, sizeof name, "%s", strrchr(s->path, '/') + 1);
+  PRINTED(name, "%s", strrchr(s->path, '/') + 1);
   *strrchr(name, '.') = '\0';
   *j = job_begin(name);
   job_copy_meshes(j, s->path);
@@ -45,10 +43,9 @@ static char *prepare(const source *s, job *j) {
 static int run_source(const source *s, const asked *a, job *j, char **deck) {
   char name[40], words[200] = "";
   *deck = prepare(s, j);
-  char *text = a == NULL ? NULL : asked_deck(*deck, a);
+  FREED char *text = a == NULL ? NULL : asked_deck(*deck, a);
   snprintf(name, sizeof name, "%s.inp", j->name);
   job_write(j, name, "%s", text == NULL ? *deck : text);
-  free(text);
   if (s->path != NULL) job_coarsen(s->path, words, sizeof words);
   strcat(words, " --no-timing --quiet");
   return job_run(j, words);
@@ -68,23 +65,21 @@ static void try_requests(points *t, const source *s, int first, int n) {
   job whole, j;
   char *deck, *again, text[200];
   const int code = run_source(s, NULL, &whole, &deck);
-  char *answer = asked_answer(&whole);
+  FREED char *answer = asked_answer(&whole);
   for (int k = 0; k < n; ++k) {
     const long at = points_spread(k, n, asked_count()) + first;
     const asked a = asked_number((int)(at % asked_count()));
     const int found = run_source(s, &a, &j, &again);
-    char *other = asked_answer(&j);
+    FREED char *other = asked_answer(&j);
     const char *wrong = fault(&a, deck, code, answer, found, other);
     points_try(t);
     asked_text(&a, text);
     if (wrong != NULL)
       points_lose(t, "%s: %s: %s: exit %d, else %d: %.200s", name_of(s), text,
                   wrong, found, code, j.errors);
-    free(other);
     free(again);
     job_end(&j);
   }
-  free(answer);
   free(deck);
   job_end(&whole);
 }
@@ -100,7 +95,7 @@ static void try_sources(points *t, long n, int n_source, const source *s) {
   points_end(t);
 }
 
-START_TEST(examples_without_outputs) {
+TEST(examples_without_outputs) {
   points t = {.kind = "outputs off, examples"};
   glob_t files;
   ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &files), 0);
@@ -111,9 +106,8 @@ START_TEST(examples_without_outputs) {
   free(s);
   globfree(&files);
 }
-END_TEST
 
-START_TEST(scenes_without_outputs) {
+TEST(scenes_without_outputs) {
   points t = {.kind = "outputs off, scenes"};
   static const scene_row *row[SCENES];
   static source s[SCENES];
@@ -123,12 +117,5 @@ START_TEST(scenes_without_outputs) {
     if (!(row[i]->flags & LARGE)) s[n++].scene = row[i];
   try_sources(&t, points_number(4, 0.05), n, s);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("outputs");
-  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
-  tcase_add_test(tests, examples_without_outputs);
-  tcase_add_test(tests, scenes_without_outputs);
-  return unit_run("outputs", tests);
-}
+UNIT_MAIN_FOR("outputs", 100 * UNIT_SECONDS)

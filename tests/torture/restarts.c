@@ -5,7 +5,6 @@
  * friction. The stops are counted in changes of files, so that nothing depends
  * on time.
  */
-#include "base/base.h"
 #include "material/scheme/scheme.h"
 #include "support/kept_mesh.h"
 #include "support/points.h"
@@ -98,15 +97,14 @@ static void each_method(points *t, int few,
   ck_assert_int_ge(taken, 2);
 }
 
-START_TEST(methods_go_on) {
+TEST(methods_go_on) {
   points t = {.kind = "restarts, methods"};
   each_method(&t, 1, small_flat);
   each_method(&t, 3, small_solid);
   points_end(&t);
 }
-END_TEST
 
-START_TEST(integrators_go_on) {
+TEST(integrators_go_on) {
   points t = {.kind = "restarts, integrators"};
   char words[64];
   for (int i = 0; scheme_list[i] != NULL; ++i)
@@ -120,7 +118,6 @@ START_TEST(integrators_go_on) {
     }
   points_end(&t);
 }
-END_TEST
 
 /* ---- effects ------------------------------------------------------------- */
 
@@ -199,7 +196,7 @@ static job scene_job(int k, double mu) {
   return j;
 }
 
-START_TEST(effects_go_on) {
+TEST(effects_go_on) {
   points t = {.kind = "restarts, effects"};
   for (int k = 0; k < N_SCENE; ++k)
     for (int m = 0; m < 2; ++m) {
@@ -210,13 +207,5 @@ START_TEST(effects_go_on) {
     }
   points_end(&t);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("restarts");
-  tcase_set_timeout(tests, 100 * UNIT_SECONDS);
-  tcase_add_test(tests, methods_go_on);
-  tcase_add_test(tests, integrators_go_on);
-  tcase_add_test(tests, effects_go_on);
-  return unit_run("restarts", tests);
-}
+UNIT_MAIN_FOR("restarts", 100 * UNIT_SECONDS)

@@ -3,7 +3,6 @@
  * another method has brought to rounding, at every level of error.
  */
 #include "accuracy/accuracy.h"
-#include "base/base.h"
 #include "solver/solver.h"
 #include "support/operated_case.h"
 #include "support/unit.h"
@@ -34,9 +33,9 @@ static double energy_norm(int m, const double *M, const double *a,
 
 static solver_error bound_of(const contact_problem *cp, const double *u,
                              const double *r) {
-  dense_inverse *inverse = NULL;
+  OWNED dense_inverse *inverse = NULL;
   contact_problem stiff = *cp;
-  double *A = calloc((size_t)cp->m * (size_t)cp->m, sizeof *A);
+  FREED double *A = calloc((size_t)cp->m * (size_t)cp->m, sizeof *A);
   solver_error e;
   int made = 0;
   ck_assert_int_eq(
@@ -47,8 +46,6 @@ static solver_error bound_of(const contact_problem *cp, const double *u,
   stiff.A = A;
   if (made) energy.stiffness = &stiff;
   ck_assert_int_eq(solver_error_bound(cp, &energy, u, r, NULL, &e), OK);
-  memory_free(inverse);
-  free(A);
   return e;
 }
 
@@ -66,7 +63,7 @@ typedef struct quality {
 static void try_levels(contact_case *c, double *exact, quality *q, int k) {
   int m = c->cp.m;
   size_t bytes = (size_t)m * sizeof *exact;
-  double *zero = calloc((size_t)m, sizeof *zero);
+  FREED double *zero = calloc((size_t)m, sizeof *zero);
   unsigned long long seed = 77 + (unsigned long long)k;
   double size = energy_norm(m, c->A, exact, zero);
   for (int level = 1; level <= 11; ++level) {
@@ -89,57 +86,51 @@ static void try_levels(contact_case *c, double *exact, quality *q, int k) {
     ++q->n;
     q->loose += e.norm > 10 * error && e.norm > 1e-11 * size;
   }
-  free(zero);
 }
 
 static quality try_problems(int count, double mu, int tresca) {
   quality q = {0, 0};
   for (int k = 0; k < count; ++k) {
-    contact_case c = case_any(2 + k % 2, 1 + k % 13, mu, k / 2 % 2,
+    CONTACT_CASE c = case_any(2 + k % 2, 1 + k % 13, mu, k / 2 % 2,
                               (unsigned long long)(4000 + k));
     if (tresca) make_tresca(&c);
     ck_assert_int_eq(solve(&c, "newton", 1e-14).outcome > 0 ||
                          contact_residual(&c.cp, c.u, c.r) < 1e-12,
                      1);
-    double *exact = malloc((size_t)c.cp.m * sizeof *exact);
+    FREED double *exact = malloc((size_t)c.cp.m * sizeof *exact);
     memcpy(exact, c.u, (size_t)c.cp.m * sizeof *exact);
     try_levels(&c, exact, &q, k);
-    free(exact);
-    case_free(&c);
   }
   return q;
 }
 
-START_TEST(bound_holds_for_a_given_limit_and_is_not_absurd) {
+TEST(bound_holds_for_a_given_limit_and_is_not_absurd) {
   quality q = try_problems(200, 0.5, 1);
   ck_assert_int_eq(q.n, 200 * 11);
   ck_assert_msg(q.loose * 20 < q.n, "%d of %d beyond ten times the error",
                 q.loose, q.n);
 }
-END_TEST
 
-START_TEST(bound_holds_without_friction) {
+TEST(bound_holds_without_friction) {
   quality q = try_problems(60, 0.0, 0);
   ck_assert_int_eq(q.n, 60 * 11);
   ck_assert_int_lt(q.loose * 20, q.n);
 }
-END_TEST
 
 /* Small friction: the fixed point contracts, the solution is unique. */
-START_TEST(bound_holds_with_coulomb_friction) {
+TEST(bound_holds_with_coulomb_friction) {
   quality q = try_problems(120, 0.15, 0);
   ck_assert_int_gt(q.n, 1000);
   ck_assert_int_lt(q.loose * 20, q.n);
 }
-END_TEST
 
 /* One triangle that slides: the contraction is mu/mu_crit, mu_crit = 1.8 for
  * nu = 0.3. The force of an error grows with the slip, so an error of the
  * limit is made larger by the whole 1/(1 - mu/mu_crit). */
-START_TEST(rate_of_the_triangle_is_known) {
+TEST(rate_of_the_triangle_is_known) {
   static const double mu[] = {0.3, 0.9, 1.7, 1.75};
   for (int k = 0; k < 4; ++k) {
-    contact_case c = case_triangle(0.3, mu[k], mu[k] + 0.02, -1.0);
+    CONTACT_CASE c = case_triangle(0.3, mu[k], mu[k] + 0.02, -1.0);
     ck_assert_int_eq(solve(&c, "lemke", 1e-12).outcome, CONVERGED);
     double rate, exact[2] = {c.u[0], c.u[1]};
     ck_assert_double_gt(exact[1], 0.01);
@@ -154,19 +145,17 @@ START_TEST(rate_of_the_triangle_is_known) {
       ck_assert_double_ge(e.norm, error * (1.0 - 1e-6));
       ck_assert_double_le(e.norm, 3.0 * error);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* The triangle that slides, and above it a body that has left it: two nodes,
  * joined by springs of which one is stretched by the slip, with two motions.
  * Nothing of it is in the rate, unless a motion slides. */
-START_TEST(body_that_has_left_is_not_in_the_rate) {
+TEST(body_that_has_left_is_not_in_the_rate) {
   const double mu = 0.9, cosine = 0.8, sine = 0.6;
   for (int slides = 0; slides < 2; ++slides) {
-    contact_case one = case_triangle(0.3, mu, mu + 0.02, -1.0);
-    contact_case c = case_new(2, 3, mu);
+    CONTACT_CASE one = case_triangle(0.3, mu, mu + 0.02, -1.0);
+    CONTACT_CASE c = case_new(2, 3, mu);
     double R[12] = {0.0}, rate;
     ck_assert_int_eq(solve(&one, "lemke", 1e-12).outcome, CONVERGED);
     for (int i = 0; i < 2; ++i) {
@@ -187,21 +176,18 @@ START_TEST(body_that_has_left_is_not_in_the_rate) {
       ck_assert(rate == HUGE_VAL);
     else
       ck_assert_double_eq_tol(rate, mu / 1.8, 1e-12);
-    case_free(&one);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Two states in turn, as at the end of an increment and through it: a factor
  * each, and none while they stay. */
-START_TEST(two_rates_are_remembered) {
-  contact_case c = case_any(3, 12, 0.25, 0, 901);
+TEST(two_rates_are_remembered) {
+  CONTACT_CASE c = case_any(3, 12, 0.25, 0, 901);
   known_rate known = {0};
   double fresh[2], again;
   size_t bytes[2][3];
   ck_assert_int_eq(solve(&c, "newton", 1e-13).outcome, CONVERGED);
-  double *other = malloc((size_t)c.cp.m * sizeof *other);
+  FREED double *other = malloc((size_t)c.cp.m * sizeof *other);
   for (int dof = 0; dof < c.cp.m; ++dof)
     other[dof] = dof % 3 == 0 ? c.u[dof] : -c.u[dof];
   for (int i = 0; i < 6; ++i) {
@@ -217,28 +203,23 @@ START_TEST(two_rates_are_remembered) {
     ck_assert_uint_lt(2 * bytes[k][1], bytes[k][0]);
     ck_assert_uint_eq(bytes[k][1], bytes[k][2]);
   }
-  free(other);
   known_rate_forget(&known);
-  case_free(&c);
 }
-END_TEST
 
 /* The first passes of the map may contract less than those it tends to. */
-START_TEST(rate_is_that_of_the_worst_pass) {
+TEST(rate_is_that_of_the_worst_pass) {
   int above = 0;
   for (int k = 0; k < 40; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2 + k % 2, 8, 0.25, k / 2 % 2, (unsigned long long)(900 + k));
     double rate, limit;
     ck_assert_int_eq(solve(&c, "newton", 1e-13).outcome, CONVERGED);
     ck_assert_int_eq(contraction_rate(&c.cp, c.u, c.r, NULL, &rate), OK);
     ck_assert_int_eq(contraction_limit(&c.cp, c.u, c.r, &limit), OK);
     above += rate > 1.05 * limit;
-    case_free(&c);
   }
   ck_assert_int_ge(above, 5);
 }
-END_TEST
 
 /* Two nodes that slip towards each other: the rate is that of the largest
  * eigenvalue of -mu A_nt inv(A_tt) e, times the size of A_nt; by the entries
@@ -247,7 +228,7 @@ static void check_two_nodes(double size, double expected) {
   static const double nt[2][2] = {{-0.8, 0.3}, {0.2, 0.5}};
   static const double tt[2][2] = {{2.0, -0.6}, {-0.6, 3.0}};
   static const double e[] = {1.0, -1.0}, mu = 0.5;
-  contact_case c = case_new(2, 2, mu);
+  CONTACT_CASE c = case_new(2, 2, mu);
   double T[2][2], limit;
   for (int i = 0; i < 2; ++i) {
     c.A[10 * i] = 9.0;
@@ -275,20 +256,18 @@ static void check_two_nodes(double size, double expected) {
                             1e-9 * expected + DBL_MIN);
     if (o != NULL) operated_free(o, &c);
   }
-  case_free(&c);
 }
 
 /* A product of the size of its rounding contracts to nothing. */
-START_TEST(rate_of_two_nodes_is_an_eigenvalue) {
+TEST(rate_of_two_nodes_is_an_eigenvalue) {
   check_two_nodes(1.0, 1.0);
   check_two_nodes(0x1p-40, 0x1p-40);
   check_two_nodes(0x1p-56, 0.0);
 }
-END_TEST
 
 /* Slip to the right by 1.04 at mu = 2 is beyond the critical friction. */
-START_TEST(no_bound_beyond_the_critical_friction) {
-  contact_case c = case_triangle(0.3, 2.0, 1.9, -1.0);
+TEST(no_bound_beyond_the_critical_friction) {
+  CONTACT_CASE c = case_triangle(0.3, 2.0, 1.9, -1.0);
   c.u[1] = 1.04;
   contact_reaction(&c.cp, c.u, c.r);
   ck_assert_double_lt(contact_residual(&c.cp, c.u, c.r), 1e-12);
@@ -296,15 +275,13 @@ START_TEST(no_bound_beyond_the_critical_friction) {
   ck_assert_double_eq_tol(e.rate, 2.0 / 1.8, 1e-12);
   ck_assert(isnan(e.norm));
   ck_assert_ptr_nonnull(e.why);
-  case_free(&c);
 }
-END_TEST
 
 /* One tangent prescribed, one node between two obstacles. */
-START_TEST(bound_holds_at_held_and_cornered_nodes) {
+TEST(bound_holds_at_held_and_cornered_nodes) {
   for (int k = 0; k < 30; ++k) {
     int dim = 2 + k % 2, n = 4 + k % 5, m = dim * n, dof = dim + 1;
-    contact_case c = case_any(dim, n, 0.4, 0, (unsigned long long)(1500 + k));
+    CONTACT_CASE c = case_any(dim, n, 0.4, 0, (unsigned long long)(1500 + k));
     unsigned char held[64] = {0};
     double side[64], exact[64];
     unsigned long long seed = 5 + (unsigned long long)k;
@@ -329,17 +306,15 @@ START_TEST(bound_holds_at_held_and_cornered_nodes) {
       ck_assert_double_ge(e.norm, error);
       ck_assert_double_le(e.norm, 100.0 * error);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Only the compliance is known: the forces in the norm of W; a given limit,
  * then Coulomb friction whose limit contracts. */
-START_TEST(bound_holds_in_the_compliance_form) {
+TEST(bound_holds_in_the_compliance_form) {
   for (int k = 0; k < 60; ++k) {
     int coulomb = k >= 30, bounded = 0;
-    contact_case c = case_any(2 + k % 2, 6, coulomb ? 0.15 : 0.4, k / 2 % 2,
+    CONTACT_CASE c = case_any(2 + k % 2, 6, coulomb ? 0.15 : 0.4, k / 2 % 2,
                               (unsigned long long)(1700 + k));
     int m = c.cp.m;
     double W[18 * 18], q[18], exact[18];
@@ -365,13 +340,11 @@ START_TEST(bound_holds_in_the_compliance_form) {
       ++bounded;
     }
     ck_assert_int_ge(bounded, coulomb ? 5 : 10);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Other units by powers of two: sqrt(N m) and nothing else changes. */
-START_TEST(bound_changes_with_the_units_only) {
+TEST(bound_changes_with_the_units_only) {
   for (int k = 0; k < 20; ++k) {
     contact_case c[2];
     double norm[2];
@@ -386,11 +359,10 @@ START_TEST(bound_changes_with_the_units_only) {
     ck_assert_double_eq_tol(norm[1], ldexp(norm[0], 5), 1e-13 * norm[1]);
   }
 }
-END_TEST
 
 /* Nothing is missing in the equation, but its sums are rounded. */
-START_TEST(rounding_is_part_of_the_bound) {
-  contact_case c = case_new(2, 1, 0.0);
+TEST(rounding_is_part_of_the_bound) {
+  CONTACT_CASE c = case_new(2, 1, 0.0);
   c.A[0] = c.A[3] = 2.0;
   c.f[0] = c.f[1] = 1.0;
   c.u[0] = c.u[1] = 0.5;
@@ -398,16 +370,6 @@ START_TEST(rounding_is_part_of_the_bound) {
   solver_error e = bound_of(&c.cp, c.u, c.r);
   ck_assert_double_gt(e.norm, 0.5e-16);
   ck_assert_double_lt(e.norm, 1e-14);
-  case_free(&c);
 }
-END_TEST
 
-UNIT_MAIN("accuracy", bound_holds_for_a_given_limit_and_is_not_absurd,
-          bound_holds_without_friction, bound_holds_with_coulomb_friction,
-          rate_of_the_triangle_is_known, body_that_has_left_is_not_in_the_rate,
-          two_rates_are_remembered, rate_is_that_of_the_worst_pass,
-          rate_of_two_nodes_is_an_eigenvalue,
-          no_bound_beyond_the_critical_friction,
-          bound_holds_at_held_and_cornered_nodes,
-          bound_holds_in_the_compliance_form, bound_changes_with_the_units_only,
-          rounding_is_part_of_the_bound)
+UNIT_MAIN("accuracy")

@@ -3,7 +3,6 @@
  * mesh whose elements have all the same product of errors. An error of second
  * order becomes that part of itself by elements of the root of it.
  */
-#include "base/base.h"
 #include "program/job.h"
 #include "support/grid.h"
 #include "support/unit.h"
@@ -15,11 +14,11 @@ static double ratio_at(const goal_result *result, int passes, double each,
                        double more) {
   goal_card goal = {.quantity = GOAL_FORCE, .target = 1.0};
   model m = {.n.goal = 1, .accuracy.goals = &goal};
-  mesh *msh = make_grid_2d((int[]){4, 4}, (double[]){1.0, 1.0});
-  double *product = calloc((size_t)msh->n_elem, sizeof *product);
-  double *size = calloc((size_t)msh->n_node, sizeof *size);
-  double *length = calloc((size_t)msh->n_node, sizeof *length);
-  aims *a = NULL;
+  OWNED mesh *msh = make_grid_2d((int[]){4, 4}, (double[]){1.0, 1.0});
+  FREED double *product = calloc((size_t)msh->n_elem, sizeof *product);
+  FREED double *size = calloc((size_t)msh->n_node, sizeof *size);
+  FREED double *length = calloc((size_t)msh->n_node, sizeof *length);
+  OWNED aims *a = NULL;
   for (int k = 0; k < msh->n_elem; ++k) {
     const int *v = msh->elem + 3 * k;
     product[k] = v[0] == 0 || v[1] == 0 || v[2] == 0 ? each * more : each;
@@ -38,13 +37,7 @@ static double ratio_at(const goal_result *result, int passes, double each,
   ck_assert_int_eq(aims_sizes(a, &m, msh, NULL, size), OK);
   for (int i = 1; i < msh->n_node && more > 0.0; ++i)
     ck_assert_double_eq_tol(size[i], size[0], 1e-12);
-  const double ratio = size[0] / length[0];
-  memory_free(a);
-  free(product);
-  free(size);
-  free(length);
-  memory_free(msh);
-  return ratio;
+  return size[0] / length[0];
 }
 
 static double ratio_of(const goal_result *result, int passes) {
@@ -56,7 +49,7 @@ static double ratio_of(const goal_result *result, int passes) {
  * the target; more than ten times off the way is halved. Without an estimate
  * half of the error. No length becomes less than a quarter, a tenth where the
  * elements' errors become at most eight times smaller. */
-START_TEST(sizes_follow_the_errors_of_a_goal) {
+TEST(sizes_follow_the_errors_of_a_goal) {
   static const struct {
     goal_verdict verdict;
     double error, band, solver, part;
@@ -83,30 +76,27 @@ START_TEST(sizes_follow_the_errors_of_a_goal) {
     }
   }
 }
-END_TEST
 
 /* The gap alone is in error: what elements have is rounding. */
-START_TEST(products_of_rounding_require_no_sizes) {
+TEST(products_of_rounding_require_no_sizes) {
   const goal_result r = {.value = 100.0, .error = 3.0};
   ck_assert_double_eq_tol(ratio_at(&r, 1, 1e-12, 1.0), 2.0, 1e-12);
   ck_assert_double_lt(ratio_at(&r, 1, 1e-6, 1.0), 1.0);
 }
-END_TEST
 
 /* Elements without an error become larger, but not in a mesh of the passes
  * whose error is below twice the target. */
-START_TEST(near_the_target_nothing_becomes_coarser) {
+TEST(near_the_target_nothing_becomes_coarser) {
   goal_result r = {.value = 100.0, .error = 1.5};
   ck_assert_double_ge(ratio_at(&r, 1, 0.3, 0.0), 1.1);
   ck_assert_double_eq_tol(ratio_at(&r, 2, 0.3, 0.0), 1.0, 1e-12);
   r.error = 2.0;
   ck_assert_double_ge(ratio_at(&r, 2, 0.3, 0.0), 1.04);
 }
-END_TEST
 
 /* A factor whose allowed error is 1 of 100 uses no element shorter than 0.03
  * times the radius of its domain, whatever its own size; at most a tenth. */
-START_TEST(elements_at_a_tip_are_as_long_as_the_target_can_use) {
+TEST(elements_at_a_tip_are_as_long_as_the_target_can_use) {
   goal_result r = {.value = 0.5, .error = 40.0, .size = 100.0};
   const double least = ratio_of(&r, 1);
   const double length = sqrt(4.0 / sqrt(3.0) / 32.0);
@@ -119,21 +109,20 @@ START_TEST(elements_at_a_tip_are_as_long_as_the_target_can_use) {
   r.size = 0.0;
   ck_assert_double_eq_tol(ratio_of(&r, 1), least, 1e-12);
 }
-END_TEST
 
 /* Without an estimate elements round the closed nodes of the contact, here one
  * of contact 0, or round its nearest node, become half as long; with one that
  * needs no sizes they stay. */
-START_TEST(zones_without_an_estimate_become_finer) {
+TEST(zones_without_an_estimate_become_finer) {
   int node_id[] = {0, 12, 24}, contact_id[] = {0, 1, 1};
   const double gap[] = {0.0, 0.2, -1e-18};
   const contact_status is[] = {CONTACT_STICK, CONTACT_OPEN, CONTACT_OPEN};
   const contact_surface surface = {
       .dim = 2, .n = 3, .node_id = node_id, .contact_id = contact_id};
-  mesh *msh = make_grid_2d((int[]){4, 4}, (double[]){1.0, 1.0});
-  double *product = calloc((size_t)msh->n_elem, sizeof *product);
-  double *length = calloc((size_t)msh->n_node, sizeof *length);
-  double *size = calloc((size_t)msh->n_node, sizeof *size);
+  OWNED mesh *msh = make_grid_2d((int[]){4, 4}, (double[]){1.0, 1.0});
+  FREED double *product = calloc((size_t)msh->n_elem, sizeof *product);
+  FREED double *length = calloc((size_t)msh->n_node, sizeof *length);
+  FREED double *size = calloc((size_t)msh->n_node, sizeof *size);
   space_lengths(msh, length);
   for (int of = -1; of < 3; ++of) {
     const int near = of == 1 ? 24 : of == 2 ? -1 : 0;
@@ -145,7 +134,7 @@ START_TEST(zones_without_an_estimate_become_finer) {
     const state s = {
         .contacts = {.surface = &surface, .contact = is, .gap = gap},
         .errors = {.n_goal = 1, .goals = &found, .goal_products = product}};
-    aims *a = NULL;
+    OWNED aims *a = NULL;
     ck_assert_int_eq(aims_new(&m, 0, &a), OK);
     ck_assert_int_eq(aims_begin(a, msh), OK);
     aims_see(a, msh, &s);
@@ -160,14 +149,8 @@ START_TEST(zones_without_an_estimate_become_finer) {
       }
       ck_assert_double_eq(size[i], (beside ? 0.5 : 2.0) * length[i]);
     }
-    memory_free(a);
   }
-  free(product);
-  free(length);
-  free(size);
-  memory_free(msh);
 }
-END_TEST
 
 /* The pass after which goals stand still, 0: none of n, on meshes of cells[k]
  * squares with nodes that slip and stick. */
@@ -179,12 +162,12 @@ static int still_after(int n, const int *cells, const int *slip,
       .value = 9.0,
       .error = error,
       .verdict = isnan(error) ? GOAL_FEW_NODES : GOAL_RELIABLE};
-  aims *a = NULL;
+  OWNED aims *a = NULL;
   int still = 0;
   ck_assert_int_eq(aims_new(&m, 0, &a), OK);
   for (int k = 0; k < n && !still; ++k) {
-    mesh *msh = make_grid_2d((int[]){cells[k], 1}, (double[]){1.0, 1.0});
-    double *product = calloc((size_t)msh->n_elem, sizeof *product);
+    OWNED mesh *msh = make_grid_2d((int[]){cells[k], 1}, (double[]){1.0, 1.0});
+    FREED double *product = calloc((size_t)msh->n_elem, sizeof *product);
     const state s = {
         .contacts = {.n_slip = slip[k], .n_stick = stick[k]},
         .errors = {.n_goal = 1, .goals = &found, .goal_products = product}};
@@ -192,10 +175,7 @@ static int still_after(int n, const int *cells, const int *slip,
     aims_see(a, msh, &s);
     aims_evaluate(a, &m);
     if (aims_stand_still(a)) still = k + 1;
-    free(product);
-    memory_free(msh);
   }
-  memory_free(a);
   return still;
 }
 
@@ -217,11 +197,5 @@ START_TEST(goals_stand_still_where_passes_gain_nothing) {
   ck_assert_int_eq(still_after(6, cells, few, none, NAN), 5);
   ck_assert_int_eq(still_after(6, cells, back, none, NAN), 5);
 }
-END_TEST
 
-UNIT_MAIN("aims", sizes_follow_the_errors_of_a_goal,
-          products_of_rounding_require_no_sizes,
-          near_the_target_nothing_becomes_coarser,
-          elements_at_a_tip_are_as_long_as_the_target_can_use,
-          zones_without_an_estimate_become_finer,
-          goals_stand_still_where_passes_gain_nothing)
+UNIT_MAIN("aims")

@@ -5,7 +5,6 @@
  */
 #include "solver/choice/choice.h"
 
-#include "base/base.h"
 #include "support/operated_case.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
@@ -65,7 +64,7 @@ static void resultant(const double *x, const double *a, double sum[6]) {
  * both, and their moments. */
 static void stand(int by_products) {
   double x[3 * NODES], load[6], floor_force[6];
-  contact_case c = truss(0.5, x);
+  CONTACT_CASE c = truss(0.5, x);
   const solver_ops *ops;
   for (int i = 0; i < NODES; ++i) {
     c.f[3 * i] = 1.0;
@@ -87,19 +86,16 @@ static void stand(int by_products) {
     ck_assert_double_le(case_violation(&c, c.u, c.r), 1e-9);
   }
   if (o != NULL) operated_free(o, &c);
-  case_free(&c);
 }
 
-START_TEST(truss_stands_by_statics) { stand(0); }
-END_TEST
+TEST(truss_stands_by_statics) { stand(0); }
 
-START_TEST(truss_stands_by_products_alone) { stand(1); }
-END_TEST
+TEST(truss_stands_by_products_alone) { stand(1); }
 
 /* The null vectors are the six motions of a rigid body, and orthonormal. */
-START_TEST(modes_are_the_rigid_motions) {
+TEST(modes_are_the_rigid_motions) {
   double x[3 * NODES], y[3 * NODES];
-  contact_case c = truss(0.5, x);
+  CONTACT_CASE c = truss(0.5, x);
   anchor an = {0};
   ck_assert_int_eq(anchor_make(&c.cp, &an), OK);
   ck_assert_int_eq(an.missing, 0);
@@ -115,15 +111,13 @@ START_TEST(modes_are_the_rigid_motions) {
     }
   }
   anchor_free(&an);
-  case_free(&c);
 }
-END_TEST
 
 /* The springs of an operator: a solve is the inverse of a product. */
-START_TEST(springs_of_an_operator_are_in_its_inverse) {
+TEST(springs_of_an_operator_are_in_its_inverse) {
   enum { M = 3 * NODES };
   double x[M], b[M], u[M], Au[M], Ax[M];
-  contact_case c = truss(0.5, x);
+  CONTACT_CASE c = truss(0.5, x);
   operated_case *o = operated_new(&c);
   const known_rows none = {0};
   unsigned long long seed = 7;
@@ -141,9 +135,7 @@ START_TEST(springs_of_an_operator_are_in_its_inverse) {
   }
   anchor_free(&an);
   operated_free(o, &c);
-  case_free(&c);
 }
-END_TEST
 
 /* ---- a block on a floor --------------------------------------------------
  */
@@ -158,8 +150,8 @@ static contact_case block(double mu, double push, double shear) {
 }
 
 /* Two blocks side by side, one pushed along the floor: six motions. */
-START_TEST(two_bodies_stand_apart) {
-  contact_case one = block(0.4, 1.0, 0.1), two = case_new(2, 34, 0.4);
+TEST(two_bodies_stand_apart) {
+  CONTACT_CASE one = block(0.4, 1.0, 0.1), two = case_new(2, 34, 0.4);
   const solver_ops *ops;
   int m = one.cp.m;
   for (int j = 0; j < 2 * m; ++j) {
@@ -180,18 +172,15 @@ START_TEST(two_bodies_stand_apart) {
       ck_assert_double_eq_tol(sum, force[k], 1e-11);
     }
   }
-  case_free(&one);
-  case_free(&two);
 }
-END_TEST
 
 /* The floor lies far below (30: four thousand times the compression) and is
  * hollow, or is level and the block is pushed: the weight arrives there. */
-START_TEST(block_falls_to_its_floor) {
+TEST(block_falls_to_its_floor) {
   static const double far[] = {0.0, 1.0, 30.0};
   const solver_ops *ops;
   for (int k = 0; k < 6; ++k) {
-    contact_case c = block(0.4, 1.0, k < 3 ? 0.0 : 0.1);
+    CONTACT_CASE c = block(0.4, 1.0, k < 3 ? 0.0 : 0.1);
     for (int i = 0; i < c.cp.n; ++i)
       c.gap[i] = far[k % 3] + (k < 3 ? 2e-5 * (i - 8) * (i - 8) : 0.0);
     for (int i = 0; solver_row(i, &ops); ++i) {
@@ -207,19 +196,17 @@ START_TEST(block_falls_to_its_floor) {
       for (int j = 0; j < c.cp.n; ++j) push -= c.r[2 * j];
       ck_assert_double_eq_tol(push, 0.016, 1e-7 * 0.016);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Lifted, pushed too hard, tipped: a ray, after few passes. */
-START_TEST(drift_is_told_as_a_ray) {
+TEST(drift_is_told_as_a_ray) {
   static const struct {
     double mu, push, shear;
   } hopeless[] = {{0.3, -1, 0}, {0, 1, 0.1}, {0.3, 1, 0.4}, {3, 1, 1.2}};
   const solver_ops *ops;
   for (int k = 0; k < 4; ++k) {
-    contact_case c = block(hopeless[k].mu, hopeless[k].push, hopeless[k].shear);
+    CONTACT_CASE c = block(hopeless[k].mu, hopeless[k].push, hopeless[k].shear);
     for (int i = 0; solver_row(i, &ops); ++i) {
       if (ops == NULL || (ops->handles & SOLVES_FLOATING)) continue;
       case_cold(&c);
@@ -227,18 +214,16 @@ START_TEST(drift_is_told_as_a_ray) {
       ck_assert_msg(rep.outcome == STOPPED_RAY, "%s: %d: %s", ops->name, k,
                     outcome_text(rep.outcome));
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* On the floor and far above it. */
-START_TEST(factors_of_two_change_no_bit) {
+TEST(factors_of_two_change_no_bit) {
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i)
     for (int far = 0; far < 2; ++far) {
       if (ops == NULL || (ops->handles & SOLVES_FLOATING)) continue;
-      contact_case c = block(0.3, 1.0, 0.2), d = block(0.3, 1.0, 0.2);
+      CONTACT_CASE c = block(0.3, 1.0, 0.2), d = block(0.3, 1.0, 0.2);
       for (int j = 0; j < c.cp.n; ++j) c.gap[j] = d.gap[j] = 30.0 * far;
       case_units(&d, -13, 28);
       case_cold(&c);
@@ -248,14 +233,11 @@ START_TEST(factors_of_two_change_no_bit) {
       ck_assert_int_eq(one.iterations, two.iterations);
       for (int j = 0; j < c.cp.m; ++j)
         ck_assert(d.u[j] == ldexp(c.u[j], -13) && d.r[j] == ldexp(c.r[j], 28));
-      case_free(&c);
-      case_free(&d);
     }
 }
-END_TEST
 
-START_TEST(refused_memory_is_given_back) {
-  contact_case c = block(0.3, 1.0, 0.1);
+TEST(refused_memory_is_given_back) {
+  CONTACT_CASE c = block(0.3, 1.0, 0.1);
   double param[PARAM_SIZE / sizeof(double)] = {0.0};
   solver_choice choice = {
       .ops = solver_find("pcg"), .param = param, .tol = 1e-9};
@@ -275,12 +257,6 @@ START_TEST(refused_memory_is_given_back) {
     ck_assert_uint_eq(memory_in_use(), before);
   }
   ck_assert_int_eq(st, OK);
-  case_free(&c);
 }
-END_TEST
 
-UNIT_MAIN("anchor", truss_stands_by_statics, truss_stands_by_products_alone,
-          springs_of_an_operator_are_in_its_inverse,
-          modes_are_the_rigid_motions, two_bodies_stand_apart,
-          block_falls_to_its_floor, drift_is_told_as_a_ray,
-          factors_of_two_change_no_bit, refused_memory_is_given_back)
+UNIT_MAIN("anchor")

@@ -1,7 +1,6 @@
 /* src/contact/average: kernels, search, rows of the nonlocal average. Expected
  * values: closed forms, and sums over dense regular points that share nothing
  * with the quadrature of the program. */
-#include "base/base.h"
 #include "contact/average/average.h"
 #include "support/unit.h"
 
@@ -107,7 +106,7 @@ static double line_moment(const mollifier *m, int power) {
   return sum * m->radius / STEPS;
 }
 
-START_TEST(bump_has_the_constants_of_the_literature) {
+TEST(bump_has_the_constants_of_the_literature) {
   mollifier m = mollifier_make(KERNEL_BUMP, 2.5, 1);
   ck_assert_double_eq_tol(1.0 / (m.scale * 2.5), 0.44399381616808, 1e-13);
   ck_assert_double_eq_tol(line_moment(&m, 0), 1.0, 1e-12);
@@ -116,10 +115,9 @@ START_TEST(bump_has_the_constants_of_the_literature) {
   m = mollifier_make(KERNEL_BUMP, 2.5, 2);
   ck_assert_double_eq_tol(1.0 / (m.scale * 2.5 * 2.5), 0.46651239317833, 1e-13);
 }
-END_TEST
 
 /* c of the polynomial kernels: 1/c = integral of k. */
-START_TEST(kernels_have_mass_one) {
+TEST(kernels_have_mass_one) {
   static const double line[] = {0, 1, 4.0 / 3, 2.0 / 3, 2},
                       disc[] = {0, 1.0 / 3, 0.5, 1.0 / 7, 1};
   for (int k = KERNEL_CONE; k < KERNEL_COUNT; ++k) {
@@ -135,7 +133,6 @@ START_TEST(kernels_have_mass_one) {
     ck_assert(mollifier_value(&m, 0.2) > 0.0);
   }
 }
-END_TEST
 
 /* ---- integrals over faces ---------------------------------------------- */
 
@@ -166,7 +163,7 @@ static void triangle_by_sums(const mollifier *m, const double *a,
     }
 }
 
-START_TEST(triangle_is_integrated_wherever_the_point_is) {
+TEST(triangle_is_integrated_wherever_the_point_is) {
   static const double corner[9] = {0.1, 0.2, 0.3, 0.9, 0.1, 0.5, 0.4, 0.8, 0.1},
                       at[][3] = {{0.1, 0.2, 0.3}, {0.5, 0.4, 0.3},
                                  {0.5, 0.4, 0.6}, {0.0, 0.0, 0.0},
@@ -187,10 +184,9 @@ START_TEST(triangle_is_integrated_wherever_the_point_is) {
               w[c], v[c]);
       }
 }
-END_TEST
 
 /* A ring against the triangles of the same annulus. */
-START_TEST(ring_is_the_surface_of_revolution) {
+TEST(ring_is_the_surface_of_revolution) {
   static const double meridian[4] = {0.6, 0.1, 0.9, 0.4};
   static const double at[][2] = {
       {0.6, 0.1}, {0.75, 0.2}, {0.0, 0.1}, {1.2, 0.5}};
@@ -228,7 +224,6 @@ START_TEST(ring_is_the_surface_of_revolution) {
                     w[0] + w[1], whole, w[0], first);
     }
 }
-END_TEST
 
 /* ---- rows -------------------------------------------------------------- */
 
@@ -250,7 +245,7 @@ static double half_line(int k, double s) {
   }
 }
 
-START_TEST(uniform_pressure_falls_to_one_half_at_an_edge) {
+TEST(uniform_pressure_falls_to_one_half_at_an_edge) {
   static const double bump[] = {0.5, 0.7027446459, 0.8770327167, 0.9839947499,
                                 1.0};
   for (int fine = 1; fine <= 8; fine *= 2)
@@ -268,11 +263,10 @@ START_TEST(uniform_pressure_falls_to_one_half_at_an_edge) {
       owned_free(&o);
     }
 }
-END_TEST
 
 /* T/(mu p L) = 1 - m1 rho/L; the trapezoidal sum over the nodes errs by
  * 0.14 (h/rho)^2 rho/L. */
-START_TEST(edges_lose_the_first_moment) {
+TEST(edges_lose_the_first_moment) {
   static const double ratio[] = {0.01, 0.05, 0.1, 0.2},
                       expected[] = {0.996655460, 0.983277300, 0.966554600,
                                     0.933109200};
@@ -290,7 +284,6 @@ START_TEST(edges_lose_the_first_moment) {
       owned_free(&o);
     }
 }
-END_TEST
 
 /* Any mesh, any kernel: what the header promises. */
 static void expect_sound(const owned *o, const double *share, int k,
@@ -315,7 +308,7 @@ static void expect_sound(const owned *o, const double *share, int k,
   }
 }
 
-START_TEST(rows_are_symmetric_by_mass_and_keep_constants) {
+TEST(rows_are_symmetric_by_mass_and_keep_constants) {
   const double ratio = unit_whole() ? 1.7 : 2.9;
   for (int k = 0; k < KERNEL_COUNT; ++k) {
     owned o = line(60, 0.0, 1.0, 0.9), s = square(unit_whole() ? 9 : 6, 0.7);
@@ -339,11 +332,10 @@ START_TEST(rows_are_symmetric_by_mass_and_keep_constants) {
     owned_free(&s);
   }
 }
-END_TEST
 
 /* The second moment of a row inside, the curvature that friction sees: that of
  * the kernel and 1/6 h^2 of the P1 function. */
-START_TEST(rows_have_the_second_moment_of_the_kernel) {
+TEST(rows_have_the_second_moment_of_the_kernel) {
   static const double m2[] = {0.15811363626380, 1.0 / 6, 0.2, 1.0 / 14,
                               1.0 / 3};
   for (int k = 0; k < KERNEL_COUNT; ++k) {
@@ -361,7 +353,6 @@ START_TEST(rows_have_the_second_moment_of_the_kernel) {
     owned_free(&o);
   }
 }
-END_TEST
 
 /* In the plane the edge of a half plane sees the kernel of the disc, whose
  * part beyond a line at distance s is a one-dimensional integral. */
@@ -376,7 +367,7 @@ static double half_plane(const mollifier *m, double s) {
   return sum;
 }
 
-START_TEST(surface_loses_mass_at_its_edges) {
+TEST(surface_loses_mass_at_its_edges) {
   owned o = square(16, 0.0);
   for (int k = 0; k < KERNEL_COUNT; ++k) {
     mollifier m = mollifier_make((kernel)k, 0.25, 2);
@@ -392,7 +383,6 @@ START_TEST(surface_loses_mass_at_its_edges) {
   }
   owned_free(&o);
 }
-END_TEST
 
 /* Least distance of x from a face by dense regular points of it, m. */
 static double face_sampled(const owned *o, int face, const double *x) {
@@ -428,7 +418,7 @@ static double left_out_sampled(const owned *o, int i) {
 
 /* On a cap of a sphere whose outer part is left out, a disc that keeps clear of
  * that part by 3 % of its radius is whole. */
-START_TEST(disc_clear_of_nodes_left_out_is_whole) {
+TEST(disc_clear_of_nodes_left_out_is_whole) {
   enum { SIDE = 16, NODES = (SIDE + 1) * (SIDE + 1) };
   owned o = square(SIDE, 0.3);
   double clear[NODES];
@@ -453,11 +443,10 @@ START_TEST(disc_clear_of_nodes_left_out_is_whole) {
   ck_assert_int_gt(whole, 100);
   owned_free(&o);
 }
-END_TEST
 
 /* A disc of radius 1 turned around its axis; far from the axis a ring is a
  * straight strip of the plane. */
-START_TEST(axisymmetric_rows) {
+TEST(axisymmetric_rows) {
   owned o = line(40, 0.0, 1.0, 0.0);
   o.p.axisymmetric = 1;
   sparse_rows G = build(&o, KERNEL_BUMP, 0.2, 0, 0, NULL);
@@ -483,11 +472,10 @@ START_TEST(axisymmetric_rows) {
   owned_free(&ring);
   owned_free(&strip);
 }
-END_TEST
 
 /* ---- local limit ------------------------------------------------------- */
 
-START_TEST(radius_below_the_mesh_is_local) {
+TEST(radius_below_the_mesh_is_local) {
   owned a = line(30, 0.0, 1.0, 0.5), b = square(8, 0.5),
         c = line(9, 0.0, 1.0, 0);
   double half[31]; /* of the faces has the pressure, which is local anyhow */
@@ -514,10 +502,9 @@ START_TEST(radius_below_the_mesh_is_local) {
   owned_free(&b);
   owned_free(&c);
 }
-END_TEST
 
 /* Whatever rounding makes of each edge. */
-START_TEST(radius_of_an_edge_is_local) {
+TEST(radius_of_an_edge_is_local) {
   owned o = line(10, 0.0, 1.0, 0.0);
   average_facts facts;
   sparse_rows G = build(&o, KERNEL_CONSTANT, 0.1, 0, 0, &facts);
@@ -528,9 +515,8 @@ START_TEST(radius_of_an_edge_is_local) {
   sparse_free(&G);
   owned_free(&o);
 }
-END_TEST
 
-START_TEST(coarse_nodes_are_counted) {
+TEST(coarse_nodes_are_counted) {
   owned o = line(10, 0.0, 1.0, 0.0);
   average_facts facts;
   o.x[2 * 10] = 1.05; /* the last segment is 0.15 long */
@@ -548,14 +534,13 @@ START_TEST(coarse_nodes_are_counted) {
   sparse_free(&G);
   owned_free(&o);
 }
-END_TEST
 
 /* ---- distances --------------------------------------------------------- */
 
 /* A right angle: straight, the two sides see each other across the corner;
  * along the line it is as if there were no corner. A node left out is an edge.
  */
-START_TEST(geodesic_distance_unbends_the_line) {
+TEST(geodesic_distance_unbends_the_line) {
   owned flat = line(40, 0.0, 2.0, 0.0), bent = line(40, 0.0, 2.0, 0.0);
   for (int i = 21; i <= 40; ++i) {
     bent.x[2 * i + 1] = bent.x[2 * i] - 1.0;
@@ -584,10 +569,9 @@ START_TEST(geodesic_distance_unbends_the_line) {
   owned_free(&flat);
   owned_free(&bent);
 }
-END_TEST
 
 /* Around a circle every row is the first one turned. */
-START_TEST(closed_line_has_no_edge) {
+TEST(closed_line_has_no_edge) {
   enum { N = 48 };
   owned o = owned_new(2, N, N);
   for (int i = 0; i < N; ++i) {
@@ -612,13 +596,12 @@ START_TEST(closed_line_has_no_edge) {
     }
   owned_free(&o);
 }
-END_TEST
 
 /* ---- mirrors ----------------------------------------------------------- */
 
 /* Half of a symmetric line or a quarter of a square with mirrors has the rows
  * of the whole, with the columns of the images added up. */
-START_TEST(mirrors_stand_for_the_other_half) {
+TEST(mirrors_stand_for_the_other_half) {
   enum { N = 12 };
   for (int k = 0; k < KERNEL_COUNT; ++k)
     for (int max = 0; max < 2; ++max) {
@@ -643,9 +626,8 @@ START_TEST(mirrors_stand_for_the_other_half) {
       owned_free(&half);
     }
 }
-END_TEST
 
-START_TEST(quarter_of_a_square_has_no_edge_at_its_mirrors) {
+TEST(quarter_of_a_square_has_no_edge_at_its_mirrors) {
   owned o = square(10, 0.4);
   average_facts facts;
   sparse_rows G;
@@ -666,10 +648,9 @@ START_TEST(quarter_of_a_square_has_no_edge_at_its_mirrors) {
   sparse_free(&G);
   owned_free(&o);
 }
-END_TEST
 
 /* Points above a triangle and outside of it, in any unit. */
-START_TEST(distance_of_a_face_is_to_its_foot_or_edge) {
+TEST(distance_of_a_face_is_to_its_foot_or_edge) {
   static const double at[][4] = {/* x, y, z, distance */
                                  {0.5, 0.5, 0.7, 0.7},  {0.5, 1.0, -0.2, 0.2},
                                  {-3.0, 1.0, 4.0, 5.0}, {1.0, -0.6, 0.8, 1.0},
@@ -683,11 +664,10 @@ START_TEST(distance_of_a_face_is_to_its_foot_or_edge) {
     }
   }
 }
-END_TEST
 
 /* ---- units ------------------------------------------------------------- */
 
-START_TEST(factors_of_two_change_no_bit) {
+TEST(factors_of_two_change_no_bit) {
   static const int powers[] = {40, -33, 3};
   for (int k = 0; k < KERNEL_COUNT; ++k)
     for (int q = 0; q < 3; ++q) {
@@ -710,12 +690,11 @@ START_TEST(factors_of_two_change_no_bit) {
       owned_free(&b);
     }
 }
-END_TEST
 
 /* ---- radius, memory ---------------------------------------------------- */
 
 /* No entry jumps where the mass of a node no longer holds its pairs. */
-START_TEST(entries_are_continuous_in_the_radius) {
+TEST(entries_are_continuous_in_the_radius) {
   const int steps = unit_whole() ? 1000 : 150;
   owned o = square(3, 0.4);
   const int n = o.p.n_node;
@@ -733,42 +712,15 @@ START_TEST(entries_are_continuous_in_the_radius) {
   owned_free(&o);
   ck_assert_double_le(most, 2e-3);
 }
-END_TEST
 
-START_TEST(refused_memory_is_given_back) {
+TEST(refused_memory_is_given_back) {
   owned o = line(20, 0.0, 1.0, 0.0);
   const average_rule rule = {
       .kernel = KERNEL_BUMP, .radius = 0.2, .geodesic = 1};
-  size_t before = memory_in_use();
-  status st = ERR_MEMORY;
-  for (long k = 1; st == ERR_MEMORY; ++k) {
-    sparse_rows G;
-    average_facts facts;
-    memory_refuse(k, 0);
-    st = average_build(&o.p, &rule, &G, &facts);
-    memory_refuse(0, 0);
-    ck_assert_msg(st == OK || st == ERR_MEMORY, "request %ld", k);
-    if (st == OK) ck_assert_int_gt(k, 20);
-    sparse_free(&G);
-    ck_assert_uint_eq(memory_in_use(), before);
-  }
+  sparse_rows G;
+  average_facts facts;
+  UNIT_REFUSED(20, average_build(&o.p, &rule, &G, &facts), sparse_free(&G));
   owned_free(&o);
 }
-END_TEST
 
-UNIT_MAIN("average", bump_has_the_constants_of_the_literature,
-          kernels_have_mass_one, triangle_is_integrated_wherever_the_point_is,
-          ring_is_the_surface_of_revolution,
-          uniform_pressure_falls_to_one_half_at_an_edge,
-          edges_lose_the_first_moment,
-          rows_are_symmetric_by_mass_and_keep_constants,
-          rows_have_the_second_moment_of_the_kernel,
-          surface_loses_mass_at_its_edges,
-          distance_of_a_face_is_to_its_foot_or_edge,
-          disc_clear_of_nodes_left_out_is_whole, axisymmetric_rows,
-          radius_below_the_mesh_is_local, radius_of_an_edge_is_local,
-          coarse_nodes_are_counted, geodesic_distance_unbends_the_line,
-          closed_line_has_no_edge, mirrors_stand_for_the_other_half,
-          quarter_of_a_square_has_no_edge_at_its_mirrors,
-          factors_of_two_change_no_bit, entries_are_continuous_in_the_radius,
-          refused_memory_is_given_back)
+UNIT_MAIN("average")

@@ -4,7 +4,6 @@
  * geometry: nodes at x = 0, 1, 2, ... on y = 0, unknowns -y and x.
  */
 #include "accuracy/accuracy.h"
-#include "base/base.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/solver_rows.h"
@@ -93,7 +92,7 @@ static void check_balance(scene *s, double size) {
   }
 }
 
-START_TEST(forces_take_up_the_resultant) {
+TEST(forces_take_up_the_resultant) {
   static const double shears[] = {0.0, 0.1, 0.2, 0.28};
   int slid = 0, open = 0;
   for (int k = 0; k < 32; ++k) {
@@ -110,11 +109,10 @@ START_TEST(forces_take_up_the_resultant) {
   ck_assert_int_gt(slid, 0);
   ck_assert_int_gt(open, 0);
 }
-END_TEST
 
 /* More than the pressures can take up, or than friction can at nodes that
  * stick (0.3 of the pressures, which sum up to 0.012): said, not done. */
-START_TEST(too_large_a_resultant_is_refused) {
+TEST(too_large_a_resultant_is_refused) {
   for (int way = 0; way < 2; ++way) {
     scene s = scene_new(0.0, 0);
     int done = 1;
@@ -125,10 +123,9 @@ START_TEST(too_large_a_resultant_is_refused) {
     scene_free(&s);
   }
 }
-END_TEST
 
 /* At rest after slip: friction is at its limit to rounding. */
-START_TEST(forces_at_their_limit_follow_it) {
+TEST(forces_at_their_limit_follow_it) {
   for (unsigned k = 0; k < 8; ++k) {
     scene s = scene_new(0.28, 0);
     for (int i = 0; i < NODES; ++i) s.c.ut0[i] = s.c.u[2 * i + 1];
@@ -138,10 +135,9 @@ START_TEST(forces_at_their_limit_follow_it) {
     scene_free(&s);
   }
 }
-END_TEST
 
 /* No node touches: nothing can balance anything. */
-START_TEST(open_body_cannot_be_balanced) {
+TEST(open_body_cannot_be_balanced) {
   scene s = scene_new(0.1, 0);
   int done = 1;
   memset(s.p.q, 0, M * sizeof *s.p.q);
@@ -151,11 +147,10 @@ START_TEST(open_body_cannot_be_balanced) {
   ck_assert_int_eq(done, 0);
   scene_free(&s);
 }
-END_TEST
 
 /* No force has a lever against the motion but by rounding, or none is there at
  * all: what is left of the resultant is rounding as well, and changes none. */
-START_TEST(resultant_of_rounding_needs_no_forces) {
+TEST(resultant_of_rounding_needs_no_forces) {
   for (int k = 0; k < 2; ++k) {
     scene s = scene_new(0.0, 1);
     double along[M], q[M];
@@ -173,12 +168,11 @@ START_TEST(resultant_of_rounding_needs_no_forces) {
     scene_free(&s);
   }
 }
-END_TEST
 
 /* Without friction no force acts along the floor: the pressures of two nodes
  * balance the rest of a defect, whatever motions are mixed in the kernel, and
  * none that pulls there. */
-START_TEST(motion_without_forces_leaves_the_others) {
+TEST(motion_without_forces_leaves_the_others) {
   for (int pulls = 0; pulls < 2; ++pulls) {
     scene s = scene_new(0.0, 1);
     int done = 1;
@@ -196,9 +190,5 @@ START_TEST(motion_without_forces_leaves_the_others) {
     scene_free(&s);
   }
 }
-END_TEST
 
-UNIT_MAIN("balance", forces_take_up_the_resultant,
-          too_large_a_resultant_is_refused, forces_at_their_limit_follow_it,
-          open_body_cannot_be_balanced, resultant_of_rounding_needs_no_forces,
-          motion_without_forces_leaves_the_others)
+UNIT_MAIN("balance")

@@ -1,7 +1,5 @@
 /* src/base/system/blas.c: a lesser kernel is replaced once, the user's choice
  * stays; threads of the environment do not count. */
-#include "base/base.h"
-#include "base/system/blas.h"
 #include "support/unit.h"
 
 #include <unistd.h>
@@ -21,13 +19,12 @@ static int play(const char *role, char **argv) {
 }
 
 static void run_self(const char *role, char *answer, int size) {
-  char path[1024], command[1200];
+  char path[1024];
   const ssize_t n = readlink("/proc/self/exe", path, sizeof path - 1);
   ck_assert_int_gt((int)n, 0);
   path[n] = '\0';
-  snprintf(command, sizeof command,
-           "OPENBLAS_NUM_THREADS=2 OPENBLAS_CORETYPE=Prescott '%s' %s", path,
-           role);
+  PRINTED(command, "OPENBLAS_NUM_THREADS=2 OPENBLAS_CORETYPE=Prescott '%s' %s",
+          path, role);
   FILE *pipe = popen(command, "r");
   ck_assert_ptr_nonnull(pipe);
   ck_assert_ptr_nonnull(fgets(answer, size, pipe));
@@ -43,21 +40,19 @@ static const char *best(void) {
   return "Prescott 0 forget 1\n";
 }
 
-START_TEST(lesser_kernel_is_replaced_by_the_best_the_processor_runs) {
+TEST(lesser_kernel_is_replaced_by_the_best_the_processor_runs) {
   char answer[100];
   run_self("forget", answer, sizeof answer);
   ck_assert_str_eq(answer, best());
 }
-END_TEST
 
-START_TEST(kernel_the_user_asked_for_stays) {
+TEST(kernel_the_user_asked_for_stays) {
   char answer[100];
   run_self("keep", answer, sizeof answer);
   ck_assert_str_eq(answer, "Prescott 0 keep 1\n");
 }
-END_TEST
 
-START_TEST(small_matrices_are_left_to_one_thread) {
+TEST(small_matrices_are_left_to_one_thread) {
   blas_set_threads(2);
   ck_assert_int_eq(openblas_get_num_threads(), 2);
   const int before = blas_rows(20);
@@ -65,14 +60,8 @@ START_TEST(small_matrices_are_left_to_one_thread) {
   ck_assert_int_eq(blas_rows(before), 20);
   ck_assert_int_eq(openblas_get_num_threads(), 2);
 }
-END_TEST
 
 int main(int argc, char **argv) {
   if (argc == 2) return play(argv[1], argv);
-  TCase *tests = tcase_create("blas");
-  tcase_add_test(tests,
-                 lesser_kernel_is_replaced_by_the_best_the_processor_runs);
-  tcase_add_test(tests, kernel_the_user_asked_for_stays);
-  tcase_add_test(tests, small_matrices_are_left_to_one_thread);
-  return unit_run("blas", tests);
+  return unit_run("blas", UNIT_SECONDS);
 }

@@ -3,9 +3,7 @@
 #include "base/box_tree.h"
 #include "support/unit.h"
 
-#include <math.h>
-
-START_TEST(search_finds_what_is_near) {
+TEST(search_finds_what_is_near) {
   enum { N = 300 };
   double x[6 * N];
   int found[N];
@@ -36,10 +34,9 @@ START_TEST(search_finds_what_is_near) {
     RELEASE(t.item, t.of, t.box);
   }
 }
-END_TEST
 
 /* Points as items: those between the planes of each slab. */
-START_TEST(search_finds_what_is_along_a_beam) {
+TEST(search_finds_what_is_along_a_beam) {
   enum { N = 400 };
   double x[3 * N];
   int found[N];
@@ -71,7 +68,5 @@ START_TEST(search_finds_what_is_along_a_beam) {
   }
   RELEASE(t.item, t.of, t.box);
 }
-END_TEST
 
-UNIT_MAIN("box_tree", search_finds_what_is_near,
-          search_finds_what_is_along_a_beam)
+UNIT_MAIN("box_tree")

@@ -2,7 +2,6 @@
  * src/model/cards: what the cards say is in the model, in its own place: no
  * number is there twice, and none is that of a default.
  */
-#include "base/base.h"
 #include "material/scheme/scheme.h"
 #include "support/text_model.h"
 #include "support/unit.h"
@@ -24,21 +23,20 @@ static mesh *square(void) {
 }
 
 static void read_steps(text_model *s, const char *steps) {
-  char text[2000];
-  snprintf(text, sizeof text,
-           "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-           "*INELASTIC, LAW=NORTON\n1e-9, 3.\n"
-           "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
-           "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
-           "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-           "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n%s",
-           steps);
+  PRINTED(text,
+          "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+          "*INELASTIC, LAW=NORTON\n1e-9, 3.\n"
+          "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+          "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+          "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+          "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n%s",
+          steps);
   text_model_read(s, text, square());
   ck_assert_int_eq(s->st, OK);
 }
 
-START_TEST(increments_of_a_step) {
-  text_model s;
+TEST(increments_of_a_step) {
+  TEXT_MODEL s;
   read_steps(&s,
              "*STEP\n*QUASISTATIC, FORM=VELOCITY\n0.25, 3., 0.125, 0.5\n"
              "*BOUNDARY\nTOP, 1, 2\n*END STEP\n"
@@ -66,12 +64,10 @@ START_TEST(increments_of_a_step) {
         1, a[2].visco.substeps, 1);
   PAIRS(a[3].visco.theta, 0, a[3].visco.tolerance, 0, a[3].visco.initial, 0,
         a[3].visco.substeps, 1);
-  text_model_close(&s);
 }
-END_TEST
 
-START_TEST(solver_and_accuracy_of_a_step) {
-  text_model s;
+TEST(solver_and_accuracy_of_a_step) {
+  TEXT_MODEL s;
   read_steps(&s,
              "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nTOP, 1, 2\n"
              "*SOLVER, METHOD=SOR, TOL=1e-7, MAX_ITER=17, LIMIT_MAX_ITER=19, "
@@ -104,12 +100,10 @@ START_TEST(solver_and_accuracy_of_a_step) {
         a[2].accuracy.time_balanced, 0);
   const accuracy_target *t = &s.m->accuracy.target;
   PAIRS(t->percent, 29, t->max_cpu, 31, t->max_memory, 37, t->max_passes, 5);
-  text_model_close(&s);
 }
-END_TEST
 
 /* What a step does not say is as it was in the step before, and where. */
-START_TEST(a_step_of_nothing_is_like_the_one_before) {
+TEST(a_step_of_nothing_is_like_the_one_before) {
   static const char *const said[] = {
       "*SOLVER, METHOD=SOR, TOL=1e-7, MAX_ITER=17, LIMIT_MAX_ITER=19, "
       "CHECK=ALL, STIFFNESS=DENSE\n"
@@ -118,12 +112,11 @@ START_TEST(a_step_of_nothing_is_like_the_one_before) {
       "*SOLVER, TOL=BALANCED, SHARE=0.25\n"
       "*ACCURACY, MESH=YES, TIME=BALANCED, TIME_SHARE=0.375\n"};
   for (int k = 0; k < 2; ++k) {
-    text_model s;
-    char text[600];
-    snprintf(text, sizeof text,
-             "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nTOP, 1, 2\n%s*END STEP\n"
-             "*STEP\n*QUASISTATIC\n1., 4.\n*END STEP\n",
-             said[k]);
+    TEXT_MODEL s;
+    PRINTED(text,
+            "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nTOP, 1, 2\n%s*END STEP\n"
+            "*STEP\n*QUASISTATIC\n1., 4.\n*END STEP\n",
+            said[k]);
     read_steps(&s, text);
     const step *a = s.m->steps, *b = a + 1;
     ck_assert_int_eq(a->accuracy.at.line_no, 20);
@@ -139,13 +132,11 @@ START_TEST(a_step_of_nothing_is_like_the_one_before) {
     PAIRS(b->output.frequency, a->output.frequency, b->output.condensed,
           a->output.condensed, b->output.at.line_no, a->output.at.line_no,
           b->restart.frequency, a->restart.frequency);
-    text_model_close(&s);
   }
 }
-END_TEST
 
-START_TEST(outputs_of_a_step) {
-  text_model s;
+TEST(outputs_of_a_step) {
+  TEXT_MODEL s;
   read_steps(&s,
              "*TIME POINTS, NAME=P\n0.5, 1.5\n"
              "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nTOP, 1, 2\n"
@@ -169,9 +160,7 @@ START_TEST(outputs_of_a_step) {
         a[0].restart.frequency, 7);
   PAIRS(a[1].output.frequency, -1, a[1].output.condensed, 11);
   PAIRS(a[2].output.frequency, 13, a[2].output.condensed, -1);
-  text_model_close(&s);
 }
-END_TEST
 
 /* The numbers of a vector. */
 static void check_vector(const double *v, double x, double y, double z) {
@@ -183,18 +172,17 @@ static void check_vector(const double *v, double x, double y, double z) {
 static void read_in_space(text_model *s, const char *cards) {
   const int n[] = {2, 2, 2};
   const double length[] = {2.0, 3.0, 4.0};
-  char text[2000];
-  snprintf(text, sizeof text,
-           "*MESH, FILE=none.msh\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-           "*MATERIAL, NAME=M\n%s*STEP\n*QUASISTATIC\n1., 4.\n"
-           "*BOUNDARY\nTOP, 1, 3\n*END STEP\n",
-           cards);
+  PRINTED(text,
+          "*MESH, FILE=none.msh\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+          "*MATERIAL, NAME=M\n%s*STEP\n*QUASISTATIC\n1., 4.\n"
+          "*BOUNDARY\nTOP, 1, 3\n*END STEP\n",
+          cards);
   text_model_read(s, text, make_grid_3d(n, length));
   ck_assert_int_eq(s->st, OK);
 }
 
-START_TEST(obstacles_and_contacts) {
-  text_model s;
+TEST(obstacles_and_contacts) {
+  TEXT_MODEL s;
   read_in_space(&s,
                 "*ELASTIC\n1000., 0.3\n*AMPLITUDE, NAME=R\n0., 0., 9., 9.\n"
                 "*OBSTACLE, NAME=A, TYPE=CYLINDER, RADIUS=0.5, SIDE=INSIDE\n"
@@ -220,12 +208,10 @@ START_TEST(obstacles_and_contacts) {
   PAIRS(c[0].has_axis, 1, c[1].has_axis, 0, c[0].axis_of_obstacle, 0);
   check_vector(c[0].axis_point, 15, 16, 17);
   check_vector(c[0].axis, 0.6, 0.8, 0);
-  text_model_close(&s);
 }
-END_TEST
 
-START_TEST(materials_and_goals) {
-  text_model s;
+TEST(materials_and_goals) {
+  TEXT_MODEL s;
   read_in_space(&s,
                 "*ELASTIC, TYPE=ORTHO, MODULI=LONG TERM\n"
                 "100., 110., 120., 0.1, 0.11, 0.12, 40., 41., 42.\n"
@@ -269,13 +255,11 @@ START_TEST(materials_and_goals) {
   check_vector(g[0].point[1], 1, 1.5, 4);
   PAIRS(g[1].component, GOAL_TENSOR + 5, g[1].target, 3, g[1].in_percent, 1,
         g[1].group_id >= 0, 1);
-  text_model_close(&s);
 }
-END_TEST
 
 /* u_a and stress_ab by the letters of the axes, the shears in their order xy,
  * yz, zx; of others a scene has none. */
-START_TEST(components_of_a_reference_have_the_letters_of_its_scene) {
+TEST(components_of_a_reference_have_the_letters_of_its_scene) {
   static const char *const axes[] = {"xyz", "rzt", "xyz"};
   static const char *const shears[] = {"xyyzzx", "rz"};
   for (int k = 0; k < 3; ++k) {
@@ -300,9 +284,5 @@ START_TEST(components_of_a_reference_have_the_letters_of_its_scene) {
     }
   }
 }
-END_TEST
 
-UNIT_MAIN("cards", components_of_a_reference_have_the_letters_of_its_scene,
-          obstacles_and_contacts, materials_and_goals, increments_of_a_step,
-          solver_and_accuracy_of_a_step,
-          a_step_of_nothing_is_like_the_one_before, outputs_of_a_step)
+UNIT_MAIN("cards")

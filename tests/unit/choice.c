@@ -1,5 +1,4 @@
 /* METHOD=AUTO, forms of a problem, what is kept from problem to problem. */
-#include "base/base.h"
 #include "solver/choice/choice.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
@@ -13,7 +12,7 @@ static solver_report solve_form(contact_case *c, int form) {
   if (form == 0) return solve_by(NULL, c, 1e-12, c->u, c->r);
   size_t m = (size_t)c->cp.m;
   contact_problem given = c->cp;
-  double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q);
+  FREED double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q);
   ck_assert(case_inverse(c->cp.m, c->A, W));
   contact_product(c->cp.m, W, c->f, q);
   c->cp.A = NULL;
@@ -21,14 +20,12 @@ static solver_report solve_form(contact_case *c, int form) {
   c->cp.f = q;
   solver_report rep = solve_by(NULL, c, 1e-12, c->u, c->r);
   c->cp = given;
-  free(W);
-  free(q);
   return rep;
 }
 
-START_TEST(frictionless_problems_are_solved_in_both_forms) {
+TEST(frictionless_problems_are_solved_in_both_forms) {
   for (int k = 0; k < 40; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2 + k % 2, 3 + k, 0.0, k / 2 % 2, (unsigned long long)k);
     for (int form = 0; form < 2; ++form) {
       case_cold(&c);
@@ -38,22 +35,20 @@ START_TEST(frictionless_problems_are_solved_in_both_forms) {
       double v = case_violation(&c, c.u, c.r);
       ck_assert_msg(v < 1e-9, "%d, form %d: violation %g", k, form, v);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Loads, stick positions, friction and Tresca limits change, A stays: the
  * answers are those of solvers that know nothing of the problems before. */
-START_TEST(what_is_kept_changes_no_answer) {
+TEST(what_is_kept_changes_no_answer) {
   unsigned long long seed = 12345;
   for (int k = 0; k < 12; ++k) {
     int dim = 2 + k % 2;
-    contact_case c = case_any(dim, 12, 0.3, k / 2 % 2, 100u + (unsigned)k);
+    CONTACT_CASE c = case_any(dim, 12, 0.3, k / 2 % 2, 100u + (unsigned)k);
     solver_choice choice = {.tol = 1e-12};
     contact_solver *s = NULL;
-    double *u = calloc((size_t)c.cp.m, sizeof *u),
-           *r = calloc((size_t)c.cp.m, sizeof *r);
+    FREED double *u = calloc((size_t)c.cp.m, sizeof *u),
+                 *r = calloc((size_t)c.cp.m, sizeof *r);
     ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
     for (int step = 0; step < 8; ++step) {
       solver_report rep;
@@ -74,26 +69,22 @@ START_TEST(what_is_kept_changes_no_answer) {
         ck_assert_double_eq_tol(c.r[i], r[i], 1e-8);
     }
     contact_solver_free(&s);
-    free(u);
-    free(r);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Without friction: nodes open and close with the load, what was made for them
  * stays; the answers are those of NEWTON, which starts again, of all unknowns
  * and of the normal ones. */
-START_TEST(opened_nodes_are_kept_and_change_no_answer) {
+TEST(opened_nodes_are_kept_and_change_no_answer) {
   unsigned long long seed = 77;
   for (int k = 0; k < 8; ++k) {
-    contact_case c = case_any(2 + k % 2, 20, 0.0, 0, 300u + (unsigned)k);
+    CONTACT_CASE c = case_any(2 + k % 2, 20, 0.0, 0, 300u + (unsigned)k);
     solver_control control = {.tol = 1e-12},
                    once = {.tol = 1e-12, .max_iter = 1};
     normal_form nf = {0};
     int limited = 0;
-    double *u = calloc((size_t)c.cp.m, sizeof *u),
-           *r = calloc((size_t)c.cp.m, sizeof *r);
+    FREED double *u = calloc((size_t)c.cp.m, sizeof *u),
+                 *r = calloc((size_t)c.cp.m, sizeof *r);
     c.cp.g0 = c.cp.ut0 = NULL;
     c.cp.B = NULL;
     for (int step = 0; step < 6; ++step) {
@@ -126,23 +117,17 @@ START_TEST(opened_nodes_are_kept_and_change_no_answer) {
     }
     ck_assert_int_gt(limited, 0);
     normal_form_free(&nf);
-    free(u);
-    free(r);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* What was put into an archive, read from a file; takes it over. */
 static archive *through_a_file(archive *a) {
-  char folder[64], path[100], before[100];
-  folder_new(folder);
-  snprintf(path, sizeof path, "%s/work", folder);
-  snprintf(before, sizeof before, "%s/before", folder);
+  FOLDER(folder);
+  PRINTED(path, "%s/work", folder);
+  PRINTED(before, "%s/before", folder);
   ck_assert_msg(archive_write(a, path, before) == OK, "%s", status_message());
   archive_free(&a);
   ck_assert_int_eq(archive_read(path, &a), OK);
-  folder_remove(folder);
   return a;
 }
 
@@ -180,13 +165,13 @@ static void release_work(workspace *w) {
 
 /* Saved before each of a series of loads, another goes on from the file to the
  * same bits. */
-START_TEST(saved_work_goes_on_to_the_same_bits) {
+TEST(saved_work_goes_on_to_the_same_bits) {
   enum { FEW = 48, MANY = 150, MOST = 2 * MANY };
   unsigned long long seed = 4321;
   const solver_choice choice = {.tol = 1e-10};
   for (int k = 0; k < 18; ++k) {
     const int kind = k % 3, auto_mu = k / 6 % 3;
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2 + k % 2, k % 6 == 2 ? MANY : FEW,
                  kind == 0 ? 0.2 * auto_mu : 0.0, 0, 500u + (unsigned)k);
     const size_t bytes = (size_t)c.cp.m * sizeof(double);
@@ -220,17 +205,15 @@ START_TEST(saved_work_goes_on_to_the_same_bits) {
       archive_free(&a);
     }
     release_work(&w[0]);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A method that cannot treat a problem says so at once, and why: the stiffness
  * of a compliance of rank 1. */
-START_TEST(unfit_method_is_named_with_the_reason) {
-  contact_case c = case_any(2, 6, 0.5, 0, 5);
+TEST(unfit_method_is_named_with_the_reason) {
+  CONTACT_CASE c = case_any(2, 6, 0.5, 0, 5);
   const solver_ops *ops;
-  double *W = calloc(12 * 12, sizeof *W);
+  FREED double *W = calloc(12 * 12, sizeof *W);
   int unfit = 0;
   for (int j = 0; j < 12 * 12; ++j) W[j] = 1.0;
   c.cp.A = NULL;
@@ -254,20 +237,18 @@ START_TEST(unfit_method_is_named_with_the_reason) {
     ++unfit;
   }
   ck_assert_int_ge(unfit, 1);
-  free(W);
-  case_free(&c);
 }
-END_TEST
 
 /* A method that works on the stiffness is judged by the compliance given: it
  * goes on until that residual is met too, for any tolerance. */
-START_TEST(tolerance_is_met_in_the_form_given) {
+TEST(tolerance_is_met_in_the_form_given) {
   static const double tols[] = {1e-2, 1e-3, 1e-5, 1e-7, 1e-9};
   const solver_ops *ops;
   for (int k = 0; k < 100; ++k) {
-    contact_case c = case_any(3, 1 + k % 5, 0.3, 0, (unsigned long long)k);
+    CONTACT_CASE c = case_any(3, 1 + k % 5, 0.3, 0, (unsigned long long)k);
     int m = c.cp.m;
-    double *W = calloc((size_t)(m * m), sizeof *W), *q = calloc(30, sizeof *q);
+    FREED double *W = calloc((size_t)(m * m), sizeof *W),
+                 *q = calloc(30, sizeof *q);
     ck_assert(case_inverse(m, c.A, W));
     contact_product(m, W, c.f, q);
     c.cp.A = NULL;
@@ -280,12 +261,8 @@ START_TEST(tolerance_is_met_in_the_form_given) {
       ck_assert_msg(rep.outcome == CONVERGED, "%s: problem %d: %g", ops->name,
                     k, rep.residual);
     }
-    free(W);
-    free(q);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A = G G' of half the rank plus 1e-8, mu = 2, in space; the load moves the
  * nodes by order one. */
@@ -308,24 +285,22 @@ static contact_case weak_case(int n, unsigned long long seed) {
 }
 
 /* Nearly singular, large friction: what the first methods leave. */
-START_TEST(last_method_solves_what_the_others_leave) {
+TEST(last_method_solves_what_the_others_leave) {
   static const int hard[] = {869, 946, 1672, 2253, 2644};
   for (size_t k = 0; k < sizeof hard / sizeof *hard; ++k) {
-    contact_case c = weak_case(1 + hard[k] % 6, (unsigned long long)hard[k]);
+    CONTACT_CASE c = weak_case(1 + hard[k] % 6, (unsigned long long)hard[k]);
     solver_report rep = solve_by(NULL, &c, 1e-8, c.u, c.r);
     ck_assert_msg(rep.outcome == CONVERGED, "%d: %s", hard[k],
                   outcome_text(rep.outcome));
     ck_assert_double_le(case_violation(&c, c.u, c.r), 1e-6);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* MAX_ITER bounds all that a method does: restarts and shares of friction. */
-START_TEST(limit_holds_for_all_attempts_together) {
+TEST(limit_holds_for_all_attempts_together) {
   const solver_ops *const rows[] = {&newton_solver, &auglag_solver,
                                     &sor_solver};
-  contact_case c = case_published(64, 20.0);
+  CONTACT_CASE c = case_published(64, 20.0);
   for (int i = 0; i < 3; ++i)
     for (int limit = 1; limit <= 61; limit += 20) {
       case_cold(&c);
@@ -341,9 +316,7 @@ START_TEST(limit_holds_for_all_attempts_together) {
                     rep.iterations, limit);
       contact_solver_free(&s);
     }
-  case_free(&c);
 }
-END_TEST
 
 /* The log of AUTO with so many iterations for each method. */
 static void tried(const contact_problem *cp, double *u, double *r, int most,
@@ -370,7 +343,7 @@ static void expect_order(const char *text, const char *const names[]) {
   }
 }
 
-START_TEST(sparse_methods_come_in_the_order_of_their_cost) {
+TEST(sparse_methods_come_in_the_order_of_their_cost) {
   static const struct {
     planted_kind kind;
     const char *names[5];
@@ -387,10 +360,9 @@ START_TEST(sparse_methods_come_in_the_order_of_their_cost) {
     planted_free(&p);
   }
 }
-END_TEST
 
 /* Sweeps end where their rate promises no answer, and are told. */
-START_TEST(sweeps_without_promise_are_left_and_told) {
+TEST(sweeps_without_promise_are_left_and_told) {
   int left = 0;
   for (unsigned long long k = 0; k < 8; ++k) {
     char text[512];
@@ -407,11 +379,10 @@ START_TEST(sweeps_without_promise_are_left_and_told) {
   }
   ck_assert_int_ge(left, 2);
 }
-END_TEST
 
 /* Sweeps take a part of the time of NEWTON, of NEWTON along a friction path
  * most of all, which a singular compliance would need. */
-START_TEST(few_contacts_are_solved_by_sweeps) {
+TEST(few_contacts_are_solved_by_sweeps) {
   int swept = 0;
   for (unsigned long long k = 0; k < 24; ++k) {
     char text[512];
@@ -427,7 +398,6 @@ START_TEST(few_contacts_are_solved_by_sweeps) {
   }
   ck_assert_int_ge(swept, 8);
 }
-END_TEST
 
 /* The residual of one iteration of a method, NULL: each of AUTO. */
 static double after_one(const contact_case *c, const solver_ops *ops) {
@@ -447,29 +417,16 @@ static double after_one(const contact_case *c, const solver_ops *ops) {
 }
 
 /* Where no method succeeds the answer is the best of all, told as it is. */
-START_TEST(best_of_the_failures_is_the_answer) {
+TEST(best_of_the_failures_is_the_answer) {
   int differ = 0;
   for (unsigned long long k = 0; k < 6; ++k) {
-    contact_case c = case_any(2, 12, 0.3, 0, 500u + k);
+    CONTACT_CASE c = case_any(2, 12, 0.3, 0, 500u + k);
     const double sweep = after_one(&c, &sor_solver),
                  step = after_one(&c, &newton_solver);
     ck_assert_double_le(after_one(&c, NULL), fmin(sweep, step) * (1 + 1e-9));
     differ += fmax(sweep, step) > 1.5 * fmin(sweep, step);
-    case_free(&c);
   }
   ck_assert_int_gt(differ, 2);
 }
-END_TEST
 
-UNIT_MAIN("choice", frictionless_problems_are_solved_in_both_forms,
-          what_is_kept_changes_no_answer,
-          opened_nodes_are_kept_and_change_no_answer,
-          saved_work_goes_on_to_the_same_bits,
-          unfit_method_is_named_with_the_reason,
-          tolerance_is_met_in_the_form_given,
-          last_method_solves_what_the_others_leave,
-          limit_holds_for_all_attempts_together,
-          sparse_methods_come_in_the_order_of_their_cost,
-          few_contacts_are_solved_by_sweeps,
-          sweeps_without_promise_are_left_and_told,
-          best_of_the_failures_is_the_answer)
+UNIT_MAIN("choice")

@@ -1,7 +1,6 @@
 /* src/fem/cluster and the averaged elements of src/fem. */
 #include "fem/cluster/cluster.h"
 
-#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"
@@ -73,13 +72,13 @@ static int hangs_together(const mesh *m, const cluster_set *c, int k) {
 }
 
 /* Sections are strips, or scattered elements that touch at their corners. */
-START_TEST(clusters_part_their_sections_and_hang_together) {
+TESTS(clusters_part_their_sections_and_hang_together, 2 * KINDS) {
   const kinematics kin = averaged_kinematics[_i / 2];
-  scene *s = scene_new(grid(kin, 6), kin, 1);
+  SCENE *s = scene_new(grid(kin, 6), kin, 1);
   const mesh *m = s->m;
   const double share[] = {1, 0, 0.5};
   const int per = m->dim + 1;
-  cluster_set *c;
+  OWNED cluster_set *c = NULL;
   for (int e = 0; e < m->n_elem; ++e) {
     const double x = m->x[m->dim * m->elem[per * e]];
     s->section_id[e] = _i % 2 ? e % 3 : x < 0.3 ? 0 : x < 0.6 ? 1 : 2;
@@ -104,13 +103,10 @@ START_TEST(clusters_part_their_sections_and_hang_together) {
         ck_assert_int_ne(c->node[i], c->node[j]);
     ck_assert(_i % 2 || hangs_together(m, c, k));
   }
-  memory_free(c);
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(no_clusters_where_the_option_does_nothing) {
-  scene *s = scene_new(grid(PLANE_STRAIN, 2), PLANE_STRAIN, 1);
+TEST(no_clusters_where_the_option_does_nothing) {
+  SCENE *s = scene_new(grid(PLANE_STRAIN, 2), PLANE_STRAIN, 1);
   cluster_set *c = (cluster_set *)s;
   set_nu(s, 0.39);
   const double share = cluster_share(4, s->E, 0);
@@ -124,9 +120,7 @@ START_TEST(no_clusters_where_the_option_does_nothing) {
   ck_assert_double_eq_tol(kept * kept * 2 * 1.4999 / (3 * 0.0002), 14.0 / 3,
                           1e-9);
   ck_assert(cluster_share(4, s->E, 1) == 1);
-  scene_free(s);
 }
-END_TEST
 
 /* Displacements and forces of a domain. */
 typedef struct solved {
@@ -151,14 +145,13 @@ static void solved_free(solved *v) {
 }
 
 static void solve(scene *s, solved *v, const double *ud) {
-  stiffness *k;
+  OWNED stiffness *k = NULL;
   condensed *c;
   ck_assert_int_eq(stiffness_assemble(&s->d, &k), OK);
   ck_assert_int_eq(condense(k, &s->d, &c), OK);
   ck_assert_int_eq(condense_load(c, v->F, ud, NULL), OK);
   ck_assert_int_eq(condense_recover(c, NULL, v->u), OK);
   condensed_free(c);
-  memory_free(k);
 }
 
 static void fix_all_round(scene *s) {
@@ -169,30 +162,19 @@ static void fix_all_round(scene *s) {
 }
 
 /* Clusters couple so many nodes that the lists of a mesh grow. */
-START_TEST(every_refused_request_of_the_stiffness_is_told) {
+TESTS(every_refused_request_of_the_stiffness_is_told, KINDS) {
   scene *s = averaged_box(averaged_kinematics[_i], 6, 0.3, 1);
-  for (long r = 1, reached = 1; reached; ++r) {
-    stiffness *k = NULL;
-    const size_t before = memory_in_use();
-    const long seen = memory_requests();
-    memory_refuse(r, 0);
-    status st = stiffness_assemble(&s->d, &k);
-    memory_refuse(0, 0);
-    reached = memory_requests() - seen >= r;
-    ck_assert_int_eq(st, reached ? ERR_MEMORY : OK);
-    memory_free(k);
-    ck_assert_uint_eq(memory_in_use(), before);
-  }
+  stiffness *k;
+  UNIT_REFUSED(0, stiffness_assemble(&s->d, &k), memory_free(k));
   free_box(s);
 }
-END_TEST
 
-START_TEST(uniform_strain_is_reproduced_at_4999) {
+TESTS(uniform_strain_is_reproduced_at_4999, 2 * KINDS) {
   const kinematics kin = averaged_kinematics[_i / 2];
   scene *s = averaged_box(kin, 5, 0.4999, _i % 2);
   const int dim = s->m->dim;
   solved v = solved_new(s);
-  double *exact = calloc(v.n, sizeof *exact);
+  FREED double *exact = calloc(v.n, sizeof *exact);
   for (size_t i = 0; i < v.n; ++i) { /* u_i = a_i x_i, sheared in x1 x2 */
     const double *x = s->m->x + (size_t)dim * (i / (size_t)dim);
     const size_t c = i % (size_t)dim;
@@ -203,15 +185,13 @@ START_TEST(uniform_strain_is_reproduced_at_4999) {
   solve(s, &v, exact);
   for (size_t i = 0; i < v.n; ++i)
     ck_assert_double_eq_tol(v.u[i], exact[i], 1e-10);
-  free(exact);
   solved_free(&v);
   free_box(s);
 }
-END_TEST
 
 /* K of the assembly, the forces of the elements and the energy belong together:
  * K u = F, residual and B' sigma less F are zero inside, E = F'u / 2. */
-START_TEST(forces_energy_and_stiffness_agree) {
+TESTS(forces_energy_and_stiffness_agree, 2 * KINDS) {
   const kinematics kin = averaged_kinematics[_i / 2];
   scene *s = averaged_box(kin, 4, 0.49, _i % 2);
   unsigned seed = 3;
@@ -231,16 +211,15 @@ START_TEST(forces_energy_and_stiffness_agree) {
   solved_free(&v);
   free_box(s);
 }
-END_TEST
 
 /* Strains without stress: what eigen_force adds is what stresses miss. */
-START_TEST(strains_without_stress_are_averaged_alike) {
+TESTS(strains_without_stress_are_averaged_alike, KINDS) {
   const kinematics kin = averaged_kinematics[_i];
   scene *s = averaged_box(kin, 4, 0.49, 0);
   const int ns = s->d.ns, n = s->m->n_elem;
   unsigned seed = 9;
   solved v = solved_new(s);
-  double *e0 = calloc((size_t)(ns * n), sizeof *e0);
+  FREED double *e0 = calloc((size_t)(ns * n), sizeof *e0);
   int *id = calloc((size_t)n, sizeof *id);
   for (int e = 0; e < n; ++e) id[e] = e;
   for (int i = 0; i < ns * n; ++i) e0[i] = scene_random(&seed);
@@ -259,12 +238,10 @@ START_TEST(strains_without_stress_are_averaged_alike) {
   eigen_add_force(&s->d, n, id, v.sigma, v.F);
   for (size_t i = 0; i < v.n; ++i)
     ck_assert_double_eq_tol(v.rest[i], v.F[i], 1e-11);
-  free(e0);
   free(id);
   solved_free(&v);
   free_box(s);
 }
-END_TEST
 
 /* Rows <tr B> V of the clusters over the unknowns: D[n*N]. */
 static void divergence(const scene *s, size_t N, double *D, double *volume) {
@@ -288,11 +265,11 @@ static void divergence(const scene *s, size_t N, double *D, double *volume) {
 static double inf_sup(scene *s) {
   const int dim = s->m->dim, n = s->d.cluster->n;
   const size_t N = (size_t)(dim * s->m->n_node);
-  double *K = calloc(N * N, sizeof *K);
-  double *D = calloc(N * (size_t)n, sizeof *D);
-  double *S = calloc((size_t)(n * n), sizeof *S),
-         *lambda = calloc((size_t)n, 8);
-  double *volume = calloc((size_t)n, sizeof *volume);
+  FREED double *K = calloc(N * N, sizeof *K);
+  FREED double *D = calloc(N * (size_t)n, sizeof *D);
+  FREED double *S = calloc((size_t)(n * n), sizeof *S),
+               *lambda = calloc((size_t)n, 8);
+  FREED double *volume = calloc((size_t)n, sizeof *volume);
   scene_dense(s, K);
   divergence(s, N, D, volume);
   for (size_t i = 0; i < N; ++i) {
@@ -314,18 +291,12 @@ static double inf_sup(scene *s) {
     }
   ck_assert_int_eq(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', n, S, n, lambda),
                    0);
-  const double least = sqrt(fmax(lambda[0], 0));
-  free(K);
-  free(D);
-  free(S);
-  free(lambda);
-  free(volume);
-  return least;
+  return sqrt(fmax(lambda[0], 0));
 }
 
 /* The constant does not fall with the size of the elements: no spurious
  * pressures. */
-START_TEST(pressures_are_stable) {
+TESTS(pressures_are_stable, KINDS) {
   static const int sizes[KINDS][3] = {{4, 8, 14}, {4, 8, 14}, {3, 4, 6}};
   for (int k = 0; k < 3; ++k) {
     scene *s = averaged_box(averaged_kinematics[_i], sizes[_i][k], 0.4, 1);
@@ -339,21 +310,5 @@ START_TEST(pressures_are_stable) {
     free_box(s);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("cluster");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_test(tests, no_clusters_where_the_option_does_nothing);
-  tcase_add_loop_test(tests, clusters_part_their_sections_and_hang_together, 0,
-                      2 * KINDS);
-  tcase_add_loop_test(tests, every_refused_request_of_the_stiffness_is_told, 0,
-                      KINDS);
-  tcase_add_loop_test(tests, uniform_strain_is_reproduced_at_4999, 0,
-                      2 * KINDS);
-  tcase_add_loop_test(tests, forces_energy_and_stiffness_agree, 0, 2 * KINDS);
-  tcase_add_loop_test(tests, strains_without_stress_are_averaged_alike, 0,
-                      KINDS);
-  tcase_add_loop_test(tests, pressures_are_stable, 0, KINDS);
-  return unit_run("cluster", tests);
-}
+UNIT_MAIN("cluster")

@@ -1,6 +1,5 @@
 /* src/run/start/coarser.c, effects/errors/nested.c: contact problems that start
  * from the solution on a coarser mesh. */
-#include "base/base.h"
 #include "effects/rows.h"
 #include "run/history/history.h"
 #include "run/start/coarser.h"
@@ -71,11 +70,11 @@ static void swap_axes(cloud *c) {
   }
 }
 
-START_TEST(node_is_the_nearest_of_its_contact) {
+TEST(node_is_the_nearest_of_its_contact) {
   static cloud coarse, fine;
   for (int turn = 0; turn < 4; ++turn) {
     const int dim = 2 + turn % 2;
-    coarser *c = NULL;
+    OWNED coarser *c = NULL;
     int nearest[MOST];
     make_cloud(&coarse, dim, 60);
     make_cloud(&fine, dim, MOST);
@@ -98,16 +97,14 @@ START_TEST(node_is_the_nearest_of_its_contact) {
       ck_assert_int_eq(coarse.contact_id[nearest[i]], fine.contact_id[i]);
       ck_assert_double_eq(square(&fine, i, &coarse, nearest[i]), best);
     }
-    memory_free(c);
   }
 }
-END_TEST
 
 /* A pressure of 3 down the y axis and a shear of 2 along x, in frames turned
  * by some angle there and another one here. */
-START_TEST(tractions_and_slip_are_those_in_space) {
+TEST(tractions_and_slip_are_those_in_space) {
   static cloud coarse, fine;
-  coarser *c = NULL;
+  OWNED coarser *c = NULL;
   coarser_node node;
   make_cloud(&coarse, 2, 3);
   make_cloud(&fine, 2, 1);
@@ -136,13 +133,11 @@ START_TEST(tractions_and_slip_are_those_in_space) {
         node.slip[0], slips ? 0.01 * (from[2] * f[2] + from[3] * f[3]) : 0,
         1e-16);
   }
-  memory_free(c);
 }
-END_TEST
 
-START_TEST(increments_are_found_by_their_time) {
+TEST(increments_are_found_by_their_time) {
   static cloud coarse;
-  coarser *c = NULL;
+  OWNED coarser *c = NULL;
   make_cloud(&coarse, 2, 2);
   ck_assert_int_eq(coarser_new(&c), OK);
   for (int k = 1; k <= 3; ++k) {
@@ -153,9 +148,7 @@ START_TEST(increments_are_found_by_their_time) {
   ck_assert_ptr_null(coarser_at(c, 0.25, 0));
   ck_assert_double_eq(coarser_time(coarser_at(c, 0.15, 1)), 0.2);
   ck_assert_ptr_null(coarser_at(c, 0.4, 1));
-  memory_free(c);
 }
-END_TEST
 
 /* ---- runs ----------------------------------------------------------------
  */
@@ -209,7 +202,7 @@ static trace run_on(const char *text, int cells, const coarser *from,
                     spoiler *spoil) {
   const int n[] = {6 * cells, 4 * cells};
   const double length[] = {6.0, 4.0};
-  text_model s;
+  TEXT_MODEL s;
   trace r = {.spoil = spoil};
   int unsettled = 0;
   text_model_read(&s, text, make_grid_2d(n, length));
@@ -222,7 +215,6 @@ static trace run_on(const char *text, int cells, const coarser *from,
   status st = history_run(s.m, s.msh, effect_table, &sink, &unsettled);
   ck_assert_msg(st == OK, "%s", status_message());
   ck_assert_int_eq(unsettled, 0);
-  text_model_close(&s);
   return r;
 }
 
@@ -235,7 +227,7 @@ static double far_apart(const trace *a, const trace *b) {
   return worst / most;
 }
 
-START_TEST(coarser_mesh_saves_steps) {
+TEST(coarser_mesh_saves_steps) {
   trace coarse = run_on(to_and_fro, 2, NULL, NULL),
         cold = run_on(to_and_fro, 4, NULL, NULL);
   trace fine = run_on(to_and_fro, 4, coarse.kept, NULL);
@@ -253,10 +245,9 @@ START_TEST(coarser_mesh_saves_steps) {
   memory_free(fine.kept);
   memory_free(again.kept);
 }
-END_TEST
 
 /* Where no state changes the last increment is nearer. */
-START_TEST(later_increments_start_from_what_is_nearer) {
+TEST(later_increments_start_from_what_is_nearer) {
   trace coarse = run_on(growing, 1, NULL, NULL);
   trace cold = run_on(growing, 4, NULL, NULL);
   trace fine = run_on(growing, 4, coarse.kept, NULL);
@@ -267,7 +258,6 @@ START_TEST(later_increments_start_from_what_is_nearer) {
   memory_free(cold.kept);
   memory_free(fine.kept);
 }
-END_TEST
 
 static void all_open(int n, cloud *c) {
   for (int i = 0; i < n; ++i) {
@@ -296,7 +286,7 @@ static void reversed(int n, cloud *c) {
   }
 }
 
-START_TEST(wrong_start_changes_no_answer) {
+TEST(wrong_start_changes_no_answer) {
   spoiler *const spoil[] = {all_open, all_stick, reversed};
   trace cold = run_on(to_and_fro, 2, NULL, NULL);
   for (int k = 0; k < 3; ++k) {
@@ -310,10 +300,5 @@ START_TEST(wrong_start_changes_no_answer) {
   }
   memory_free(cold.kept);
 }
-END_TEST
 
-UNIT_MAIN("coarser", node_is_the_nearest_of_its_contact,
-          tractions_and_slip_are_those_in_space,
-          increments_are_found_by_their_time, coarser_mesh_saves_steps,
-          later_increments_start_from_what_is_nearer,
-          wrong_start_changes_no_answer)
+UNIT_MAIN("coarser")

@@ -1,11 +1,10 @@
 /* src/output/columns: over the tables, so that a new row is tested too. */
-#include "base/base.h"
 #include "effects/rows.h"
 #include "output/columns/columns.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 
-START_TEST(every_row_has_unit_help_scene_and_value) {
+TEST(every_row_has_unit_help_scene_and_value) {
   const column *c;
   for (column_walk k = {0}; (c = column_next(&k)) != NULL;) {
     ck_assert_msg(c->unit != NULL && c->unit[0] != '\0', "%s", c->name);
@@ -16,9 +15,8 @@ START_TEST(every_row_has_unit_help_scene_and_value) {
     ck_assert_msg(strpbrk(c->name, " []#/") == NULL, "%s", c->name);
   }
 }
-END_TEST
 
-START_TEST(every_column_of_an_effect_is_listed_once) {
+TEST(every_column_of_an_effect_is_listed_once) {
   for (int e = 0; effect_table[e] != NULL; ++e)
     for (int i = 0; i < effect_table[e]->n_column; ++i) {
       const column *c;
@@ -28,9 +26,8 @@ START_TEST(every_column_of_an_effect_is_listed_once) {
       ck_assert_int_eq(times, 1);
     }
 }
-END_TEST
 
-START_TEST(names_are_unique_within_entity_and_scene) {
+TEST(names_are_unique_within_entity_and_scene) {
   const column *a, *b;
   for (column_walk k = {0}; (a = column_next(&k)) != NULL;)
     for (column_walk l = k; (b = column_next(&l)) != NULL;)
@@ -38,10 +35,9 @@ START_TEST(names_are_unique_within_entity_and_scene) {
                         strcmp(a->name, b->name) != 0,
                     "%s", a->name);
 }
-END_TEST
 
 /* Components of one field of HDF5 have places of their own. */
-START_TEST(fields_have_distinct_components) {
+TEST(fields_have_distinct_components) {
   const column *a, *b;
   for (column_walk k = {0}; (a = column_next(&k)) != NULL;)
     for (column_walk l = k; (b = column_next(&l)) != NULL;) {
@@ -50,7 +46,6 @@ START_TEST(fields_have_distinct_components) {
       if (strcmp(a->field, b->field) == 0) ck_assert_int_ne(a->part, b->part);
     }
 }
-END_TEST
 
 static int count_finite(const made_up *made) {
   int n = 0;
@@ -68,24 +63,21 @@ static int count_finite(const made_up *made) {
   return n;
 }
 
-START_TEST(every_value_is_finite) {
+TEST(every_value_is_finite) {
   for (int dim = 2; dim <= 3; ++dim) {
-    made_up *made = made_up_new(dim, 2, 3);
+    MADE_UP *made = made_up_new(dim, 2, 3);
     made_up_advance(made, 2);
     ck_assert_int_gt(count_finite(made), 100);
-    made_up_free(made);
   }
-  made_up *axi = made_up_new(2, 2, 3);
+  MADE_UP *axi = made_up_new(2, 2, 3);
   axi->body.kin = AXISYMMETRIC;
   made_up_advance(axi, 2);
   ck_assert_int_eq(scene_of(&axi->m), SCENE_AXI);
   ck_assert_int_gt(count_finite(axi), 100);
-  made_up_free(axi);
 }
-END_TEST
 
-START_TEST(columns_follow_the_effects) {
-  made_up *made = made_up_new(2, 1, 1);
+TEST(columns_follow_the_effects) {
+  MADE_UP *made = made_up_new(2, 1, 1);
   made->m.effects = 0;
   const column *c;
   for (column_walk k = {0}; (c = column_next(&k)) != NULL;)
@@ -95,14 +87,12 @@ START_TEST(columns_follow_the_effects) {
       ck_assert_ptr_null(strstr(c->name, "stress"));
       ck_assert_ptr_null(strstr(c->name, "friction"));
     }
-  made_up_free(made);
 }
-END_TEST
 
 /* Of all effects that have one: without it no column is read. */
-START_TEST(columns_of_an_effect_wait_for_its_state) {
+TEST(columns_of_an_effect_wait_for_its_state) {
   int n = 0;
-  made_up *made = made_up_new(3, 2, 3);
+  MADE_UP *made = made_up_new(3, 2, 3);
   made_up_advance(made, 2);
   made->s.effects = NULL;
   for (int k = 0; effect_table[k] != NULL; ++k) {
@@ -113,9 +103,7 @@ START_TEST(columns_of_an_effect_wait_for_its_state) {
                     e->columns[i].name, e->name);
   }
   ck_assert_int_gt(n, 0);
-  made_up_free(made);
 }
-END_TEST
 
 static const column *named(const made_up *made, entity of, const char *name) {
   const column *c;
@@ -135,8 +123,8 @@ static double value_of(const made_up *made, entity of, const char *name,
 }
 
 /* n = -y, t1 = x, t2 = z; area 0.25: force (r_t1, -r_n, r_t2). */
-START_TEST(contact_signs_and_directions) {
-  made_up *made = made_up_new(3, 2, 3);
+TEST(contact_signs_and_directions) {
+  MADE_UP *made = made_up_new(3, 2, 3);
   made_up_advance(made, 1);
   double *r = made->array[MADE_RC] + 3 * 4;
   r[0] = -2;
@@ -153,12 +141,10 @@ START_TEST(contact_signs_and_directions) {
   made->m.n.contact = 2; /* the column is there for several               */
   ck_assert(value_of(made, PER_CONTACT_NODE, "contact_no", 4) == 1);
   made->m.n.contact = 1;
-  made_up_free(made);
 }
-END_TEST
 
 /* Stresses with known principal values: turned ones, equal ones, none. */
-START_TEST(principal_stresses_are_those_of_the_tensor) {
+TEST(principal_stresses_are_those_of_the_tensor) {
   static const struct {
     double stress[6], principal[3]; /* xx yy zz xy yz zx                      */
   } tensors[] = {{{0}, {0, 0, 0}},
@@ -168,27 +154,24 @@ START_TEST(principal_stresses_are_those_of_the_tensor) {
                  {{1, 1, 1, 1, 1, 1}, {3, 0, 0}},
                  {{2, 2, 2, -1, -1, -1}, {3, 3, 0}},
                  {{2, 3, 4, -2, -2, 0}, {6, 3, 0}}};
-  made_up *made = made_up_new(3, 2, 3);
+  MADE_UP *made = made_up_new(3, 2, 3);
   made_up_advance(made, 1);
   for (size_t i = 0; i < sizeof tensors / sizeof *tensors; ++i) {
     memcpy(made->array[MADE_STRESS], tensors[i].stress, sizeof(double[6]));
     for (int k = 0; k < 3; ++k) {
-      char name[32];
-      snprintf(name, sizeof name, "principal_%d", k + 1);
+      PRINTED(name, "principal_%d", k + 1);
       ck_assert_double_eq_tol(value_of(made, PER_ELEMENT, name, 0),
                               tensors[i].principal[k], 1e-14);
     }
   }
-  made_up_free(made);
 }
-END_TEST
 
 /* In a corner the rows of the second obstacle, whatever its number, are no
  * friction. */
-START_TEST(force_of_a_second_obstacle_is_no_friction) {
-  made_up *made = made_up_new(3, 2, 3);
+TEST(force_of_a_second_obstacle_is_no_friction) {
+  MADE_UP *made = made_up_new(3, 2, 3);
   made_up_advance(made, 1);
-  int *side = calloc(2 * (size_t)made->surface.n, sizeof *side);
+  FREED int *side = calloc(2 * (size_t)made->surface.n, sizeof *side);
   for (int i = 0; i < 2 * made->surface.n; ++i) side[i] = i % 3 - 1;
   made->surface.side_id = side;
   for (int i = 0; i < made->surface.n; ++i)
@@ -202,14 +185,11 @@ START_TEST(force_of_a_second_obstacle_is_no_friction) {
                          i) == 4 * wanted);
     }
   made->surface.side_id = NULL;
-  free(side);
-  made_up_free(made);
 }
-END_TEST
 
 /* Uniaxial: the stress itself; pure shear: sqrt(3) of it; pressure: 0. */
-START_TEST(mises_of_simple_states) {
-  made_up *made = made_up_new(3, 1, 3);
+TEST(mises_of_simple_states) {
+  MADE_UP *made = made_up_new(3, 1, 3);
   made_up_advance(made, 1);
   double *s = made->array[MADE_STRESS];
   memset(s, 0, 18 * sizeof *s);
@@ -221,13 +201,11 @@ START_TEST(mises_of_simple_states) {
   ck_assert_double_eq_tol(value_of(made, PER_ELEMENT, "mises", 1), 2 * sqrt(3),
                           1e-14);
   ck_assert(value_of(made, PER_ELEMENT, "mises", 2) == 0);
-  made_up_free(made);
 }
-END_TEST
 
 /* Three elements flow, with 2, 1 and 3 variables. */
-START_TEST(internal_variables_of_unlike_laws) {
-  made_up *made = made_up_new(2, 2, 3);
+TEST(internal_variables_of_unlike_laws) {
+  MADE_UP *made = made_up_new(2, 2, 3);
   made_up_advance(made, 1);
   const size_t start[] = {0, 2, 3, 6};
   const int elem[] = {1, 3, 4};
@@ -255,13 +233,11 @@ START_TEST(internal_variables_of_unlike_laws) {
   }
   ck_assert_int_eq(seen, 3 * 12);
   made->s.body.flow = NULL;
-  made_up_free(made);
 }
-END_TEST
 
 /* n = -y, t1 = x, t2 = z; slip (3, 4) in them. */
-START_TEST(slip_has_a_direction) {
-  made_up *made = made_up_new(3, 2, 3);
+TEST(slip_has_a_direction) {
+  MADE_UP *made = made_up_new(3, 2, 3);
   made_up_advance(made, 1);
   double *slip = made->array[MADE_SLIP] + 2 * 4;
   slip[0] = 3e-3;
@@ -274,9 +250,7 @@ START_TEST(slip_has_a_direction) {
                           -0.8, 1e-14);
   made->status[4] = CONTACT_STICK;
   ck_assert_double_eq(value_of(made, PER_CONTACT_NODE, "slip_dir_x", 4), 0);
-  made_up_free(made);
 }
-END_TEST
 
 /* The column of that name in a scene, whether visible or not. */
 static double told(const made_up *made, entity of, unsigned scene,
@@ -305,8 +279,8 @@ static void check_told(const made_up *made, entity of, unsigned scene, size_t n,
   check_told(made, of, scene, sizeof list / sizeof *list, list)
 
 /* Every figure of a contact and of an increment is that of its name. */
-START_TEST(figures_stand_under_their_names) {
-  made_up *made = made_up_new(3, 1, 3);
+TEST(figures_stand_under_their_names) {
+  MADE_UP *made = made_up_new(3, 1, 3);
   made_up_advance(made, 1);
   made->totals[0] = (contact_total){.force = {1, 2, 3},
                                     .moment = {4, 5, 6},
@@ -390,15 +364,13 @@ START_TEST(figures_stand_under_their_names) {
   CHECK_TOLD(PER_ZONE, SCENE_AXI, zones);
   CHECK_TOLD(PER_ZONE, SCENE_PLANE, plane);
   CHECK_TOLD(PER_INCREMENT, SCENE_SOLID, increment);
-  made_up_free(made);
 }
-END_TEST
 
 enum { CARTESIAN = SCENE_PLANE | SCENE_SOLID };
 
 /* Components by their letters, of vectors and tensors: in a body of revolution
  * r, z, then the hoop. */
-START_TEST(components_are_those_of_their_letters) {
+TEST(components_are_those_of_their_letters) {
   static const struct {
     const char *end;
     unsigned scenes;
@@ -425,9 +397,8 @@ START_TEST(components_are_those_of_their_letters) {
     }
   ck_assert_int_gt(seen, 70);
 }
-END_TEST
 
-START_TEST(units_are_composed_from_the_labels) {
+TEST(units_are_composed_from_the_labels) {
   model m = {.unit.length = "mm", .unit.force = "N"};
   ck_assert_str_eq(column_unit("force/length^2", &m), "N/mm^2");
   ck_assert_str_eq(column_unit("force*length", &m), "N*mm");
@@ -438,17 +409,5 @@ START_TEST(units_are_composed_from_the_labels) {
   m.unit.length = label;
   ck_assert_uint_eq(strlen(column_unit("length", &m)), 79);
 }
-END_TEST
 
-UNIT_MAIN("columns", every_row_has_unit_help_scene_and_value,
-          every_column_of_an_effect_is_listed_once,
-          names_are_unique_within_entity_and_scene,
-          fields_have_distinct_components, every_value_is_finite,
-          columns_follow_the_effects, columns_of_an_effect_wait_for_its_state,
-          contact_signs_and_directions,
-          principal_stresses_are_those_of_the_tensor,
-          force_of_a_second_obstacle_is_no_friction, mises_of_simple_states,
-          internal_variables_of_unlike_laws, slip_has_a_direction,
-          figures_stand_under_their_names,
-          components_are_those_of_their_letters,
-          units_are_composed_from_the_labels)
+UNIT_MAIN("columns")

@@ -1,5 +1,4 @@
 /* src/fem: condensation against dense elimination, recovery, bits. */
-#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"
@@ -34,30 +33,6 @@ static scene *held_2d(void) {
   scene_fix(s, "LEFT", 0);
   scene_fix_node(s, s->m->n_node - 1, 1);
   s->surface.held[1] = 1;
-  return s;
-}
-
-static scene *two_bodies(void) {
-  mesh *a = make_grid_2d((int[]){3, 3}, (double[]){1, 1});
-  mesh *b = grid_join(a, a, (double[]){2, 0.25});
-  scene *s = scene_new(b, PLANE_STRAIN, 2);
-  const int contact[] = {1, 2, 17, 18, 19}; /* feet of both */
-  b->group[0].n_node = 5;
-  memcpy(b->group[0].node_id, contact, sizeof contact);
-  scene_contact(s, "BODY", (double[]){0, -1}, 0);
-  for (int c = 0; c < 2; ++c) {
-    scene_fix_node(s, 12, c);
-    scene_fix_node(s, 15, c);
-  }
-  scene_fix_node(s, 16, 0);
-  memory_free(a);
-  return s;
-}
-
-static scene *floating_3d(void) {
-  scene *s = scene_new(make_grid_3d((int[]){3, 2, 2}, (double[]){1, 1, 2}),
-                       SOLID_3D, 5);
-  scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
   return s;
 }
 
@@ -115,8 +90,9 @@ static scene *no_contact(void) {
 }
 
 static scene *(*const scenes[])(void) = {
-    plain_2d,   oblique_2d,  held_2d,        two_bodies, floating_3d,
-    oblique_3d, all_contact, cut_by_contact, no_contact};
+    plain_2d,         oblique_2d,        held_2d,
+    scene_two_bodies, scene_floating_3d, oblique_3d,
+    all_contact,      cut_by_contact,    no_contact};
 enum { SCENES = sizeof scenes / sizeof *scenes };
 
 /* Those that stand without tangential contact. */
@@ -160,7 +136,7 @@ static parts split(const scene *s) {
   p.inner = get(N);
   p.contact = get(N);
   p.row = get(N);
-  int *of = get(N);
+  FREED int *of = get(N);
   scene_dense(s, p.K);
   scene_unknowns(s, p.unknown);
   for (int q = 0; q < p.m; ++q)
@@ -174,7 +150,6 @@ static parts split(const scene *s) {
       p.contact[p.nc++] = i;
     }
   }
-  free(of);
   return p;
 }
 
@@ -189,7 +164,7 @@ static void release(parts *p) {
 /* A[m*m] by dense elimination; rows of prescribed unknowns stay zero. */
 static void naive_schur(const parts *p, double *A) {
   const size_t N = (size_t)p->N, ni = (size_t)p->ni, m = (size_t)p->m;
-  double *Kii = get(ni * ni), *Kic = get(ni * (size_t)p->nc);
+  FREED double *Kii = get(ni * ni), *Kic = get(ni * (size_t)p->nc);
   for (size_t j = 0; j < ni; ++j)
     for (size_t i = 0; i < ni; ++i)
       Kii[i + ni * j] = p->K[(size_t)p->inner[i] + N * (size_t)p->inner[j]];
@@ -208,8 +183,6 @@ static void naive_schur(const parts *p, double *A) {
              Kic[k + ni * (size_t)j];
       A[(size_t)p->row[i] + m * (size_t)p->row[j]] = v;
     }
-  free(Kii);
-  free(Kic);
 }
 
 static double largest(size_t n, const double *v) {
@@ -229,13 +202,13 @@ static void end(scene *s, stiffness *k, condensed *c) {
   scene_free(s);
 }
 
-START_TEST(condensed_matrix_is_the_schur_complement) {
+TESTS(condensed_matrix_is_the_schur_complement, SCENES + FRICTIONLESS) {
   scene *s = take(_i);
   stiffness *k;
   condensed *c;
   parts p = split(s);
   const size_t m = (size_t)p.m;
-  double *A = get(m * m);
+  FREED double *A = get(m * m);
   const double *B;
   naive_schur(&p, A);
   solve(s, &k, &c);
@@ -258,11 +231,9 @@ START_TEST(condensed_matrix_is_the_schur_complement) {
   ck_assert_double_ge((double)info.bytes, 8 * (reals + factor));
   ck_assert_double_le((double)info.bytes, 8 * (reals + 2 * factor));
   ck_assert_double_gt(condensed_condition(c), 1);
-  free(A);
   release(&p);
   end(s, k, c);
 }
-END_TEST
 
 /* Prescribed local components from the global ones, as fem.h defines them. */
 static void local_prescribed(const scene *s, const double *ud, double *a) {
@@ -312,7 +283,7 @@ static double contact_force(const scene *s, const condensed *c, int row,
  * A u_c - f_c must be the force of the contact rows; prescribed components
  * keep their value.
  */
-START_TEST(load_and_recovery_agree_with_dense_equilibrium) {
+TESTS(load_and_recovery_agree_with_dense_equilibrium, SCENES + FRICTIONLESS) {
   scene *s = take(_i);
   stiffness *k;
   condensed *c;
@@ -353,10 +324,9 @@ START_TEST(load_and_recovery_agree_with_dense_equilibrium) {
   release(&p);
   end(s, k, c);
 }
-END_TEST
 
-START_TEST(floating_body_has_the_rigid_motions_as_null_space) {
-  scene *s = floating_3d();
+TEST(floating_body_has_the_rigid_motions_as_null_space) {
+  scene *s = scene_floating_3d();
   stiffness *k;
   condensed *c;
   solve(s, &k, &c);
@@ -365,7 +335,7 @@ START_TEST(floating_body_has_the_rigid_motions_as_null_space) {
   const size_t m = (size_t)(3 * n);
   const double *A = condensed_matrix(c);
   for (int mode = 0; mode < 6; ++mode) {
-    double *v = get(m);
+    FREED double *v = get(m);
     for (int q = 0; q < n; ++q) {
       const double *x = s->surface.x + 3 * q, *f = s->surface.frame + 9 * q;
       double u[3] = {0};
@@ -384,18 +354,16 @@ START_TEST(floating_body_has_the_rigid_motions_as_null_space) {
       for (size_t j = 0; j < m; ++j) sum += A[i + m * j] * v[j];
       ck_assert_double_eq_tol(sum, 0, 1e-13 * largest(m * m, A));
     }
-    free(v);
   }
   end(s, k, c);
 }
-END_TEST
 
 /* Smallest eigenvalue over the largest of the dense matrix of the unknowns,
  * scaled to a unit diagonal; inverted. */
 static double dense_condition(const parts *p) {
   const int n = p->ni + p->nc;
   const size_t N = (size_t)p->N;
-  double *a = get((size_t)(n * n)), *w = get((size_t)n);
+  FREED double *a = get((size_t)(n * n)), *w = get((size_t)n);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const size_t r =
@@ -406,10 +374,7 @@ static double dense_condition(const parts *p) {
           p->K[r + N * c] / sqrt(p->K[r * (N + 1)] * p->K[c * (N + 1)]);
     }
   ck_assert_int_eq(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', n, a, n, w), 0);
-  const double condition = w[n - 1] / w[0];
-  free(a);
-  free(w);
-  return condition;
+  return w[n - 1] / w[0];
 }
 
 static scene *sliver(void) {
@@ -438,7 +403,7 @@ static scene *one_node(void) {
   return s;
 }
 
-START_TEST(condition_is_near_that_of_the_scaled_dense_matrix) {
+TEST(condition_is_near_that_of_the_scaled_dense_matrix) {
   static scene *(*const make[])(void) = {plain_2d,   oblique_2d,     held_2d,
                                          oblique_3d, cut_by_contact, no_contact,
                                          sliver,     weakly_held,    one_node};
@@ -460,7 +425,6 @@ START_TEST(condition_is_near_that_of_the_scaled_dense_matrix) {
     end(s, k, c);
   }
 }
-END_TEST
 
 /* u for moduli and loads times 2^power. */
 static double *scaled_solution(scene *(*make)(void), int power, double *A0) {
@@ -490,50 +454,31 @@ static double *scaled_solution(scene *(*make)(void), int power, double *A0) {
   return u;
 }
 
-START_TEST(power_of_two_in_the_moduli_leaves_every_bit) {
-  scene *s = scenes[_i]();
+TESTS(power_of_two_in_the_moduli_leaves_every_bit, SCENES) {
+  SCENE *s = scenes[_i]();
   const size_t N = (size_t)(s->m->dim * s->m->n_node);
-  scene_free(s);
   static const int power[] = {40, -40, 13, 1};
   double A[2][400];
-  double *u = scaled_solution(scenes[_i], 0, A[0]);
+  FREED double *u = scaled_solution(scenes[_i], 0, A[0]);
   for (int q = 0; q < 4; ++q) {
-    double *v = scaled_solution(scenes[_i], power[q], A[1]);
+    FREED double *v = scaled_solution(scenes[_i], power[q], A[1]);
     ck_assert(memcmp(u, v, N * sizeof *u) == 0);
-    free(v);
   }
-  free(u);
-}
-END_TEST
-
-/* work[3*N+1]: load, condensed load, solution, condition. */
-static status whole_way(const scene *s, double *work) {
-  stiffness *k = NULL;
-  condensed *c = NULL;
-  const int N = s->m->dim * s->m->n_node;
-  status st = stiffness_assemble(&s->d, &k);
-  if (st == OK) st = condense(k, &s->d, &c);
-  if (st == OK) st = condense_load(c, work, NULL, work + N);
-  if (st == OK) st = condense_recover(c, work + N, work + 2 * N);
-  if (st == OK) work[3 * N] = condensed_condition(c);
-  condensed_free(c);
-  memory_free(k);
-  return st;
 }
 
 /* The solver may do without a block: nothing differs then. */
-START_TEST(every_refused_request_is_survived) {
-  scene *s = scenes[_i]();
+TESTS(every_refused_request_is_survived, SCENES) {
+  SCENE *s = scenes[_i]();
   const size_t n = 3 * (size_t)(s->m->dim * s->m->n_node) + 1;
-  double *whole = get(n), *work = get(n);
+  FREED double *whole = get(n), *work = get(n);
   long r = 0, made;
-  ck_assert_int_eq(whole_way(s, whole), OK);
+  ck_assert_int_eq(scene_whole_way(&s->d, whole, &whole[n - 1]), OK);
   const size_t before = memory_in_use();
   do {
     const long seen = memory_requests();
     memset(work, 0, n * sizeof *work);
     memory_refuse(r + 1, r % 2 == 0);
-    status st = whole_way(s, work);
+    status st = scene_whole_way(&s->d, work, &work[n - 1]);
     memory_refuse(0, 0);
     made = memory_requests() - seen;
     ck_assert_uint_eq(memory_in_use(), before);
@@ -544,24 +489,19 @@ START_TEST(every_refused_request_is_survived) {
                     status_name(st), status_message());
   } while (made > r++);
   ck_assert_int_gt(r, 50);
-  free(work);
-  free(whole);
-  scene_free(s);
 }
-END_TEST
 
 static void is_singular(scene *s, const char *part) {
-  stiffness *k;
+  OWNED stiffness *k = NULL;
   condensed *c;
   ck_assert_int_eq(stiffness_assemble(&s->d, &k), OK);
   ck_assert_int_eq(condense(k, &s->d, &c), ERR_SINGULAR);
   ck_assert_ptr_null(c);
   ck_assert_msg(strstr(status_message(), part) != NULL, "%s", status_message());
-  memory_free(k);
   scene_free(s);
 }
 
-START_TEST(stiffness_that_is_not_definite_is_refused_with_its_place) {
+TEST(stiffness_that_is_not_definite_is_refused_with_its_place) {
   scene *s = no_contact();
   s->E[15] = -s->E[15];
   is_singular(s, "with node");
@@ -572,21 +512,5 @@ START_TEST(stiffness_that_is_not_definite_is_refused_with_its_place) {
   for (int i = 0; i < 16; ++i) s->E[i] = 0;
   is_singular(s, "zero");
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("condensation");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, condensed_matrix_is_the_schur_complement, 0,
-                      SCENES + FRICTIONLESS);
-  tcase_add_loop_test(tests, load_and_recovery_agree_with_dense_equilibrium, 0,
-                      SCENES + FRICTIONLESS);
-  tcase_add_test(tests, floating_body_has_the_rigid_motions_as_null_space);
-  tcase_add_test(tests, condition_is_near_that_of_the_scaled_dense_matrix);
-  tcase_add_test(tests,
-                 stiffness_that_is_not_definite_is_refused_with_its_place);
-  tcase_add_loop_test(tests, power_of_two_in_the_moduli_leaves_every_bit, 0,
-                      SCENES);
-  tcase_add_loop_test(tests, every_refused_request_is_survived, 0, SCENES);
-  return unit_run("condensation", tests);
-}
+UNIT_MAIN("condensation")

@@ -9,7 +9,6 @@
  * of many bodies, with a sparse compliance that may be singular or badly
  * scaled, have a planted answer and a natural map of their own.
  */
-#include "base/base.h"
 #include "support/operated_case.h"
 #include "support/planted.h"
 #include "support/points.h"
@@ -75,13 +74,12 @@ static void mix_limits(problem *p, unsigned long long *seed) {
 static void let_touch(problem *p, unsigned long long *seed) {
   contact_case *c = &p->c;
   int d = c->cp.dim, m = c->cp.m;
-  double *u = calloc((size_t)m, sizeof *u);
+  FREED double *u = calloc((size_t)m, sizeof *u);
   for (int j = 0; j < m; ++j) {
     double less = j / d % 2 == 0 ? 0.0 : 0.2;
     u[j] = j % d == 0 ? c->gap[j / d] - less : case_random(seed) - 0.5;
   }
   contact_product(m, c->A, u, c->f);
-  free(u);
 }
 
 static void tie(problem *p) {
@@ -100,7 +98,7 @@ static void weaken(problem *p, unsigned long long *seed) {
   contact_case *c = &p->c;
   int m = c->cp.m, rank = m / 2 + 1;
   ck_assert_int_gt(m, 0);
-  double *G = calloc((size_t)(m * rank), sizeof *G);
+  FREED double *G = calloc((size_t)(m * rank), sizeof *G);
   for (int i = 0; i < m * rank; ++i) G[i] = case_random(seed) - 0.5;
   for (int i = 0; i < m; ++i)
     for (int j = 0; j < m; ++j) {
@@ -109,11 +107,9 @@ static void weaken(problem *p, unsigned long long *seed) {
       c->A[i + m * j] = sum;
     }
   /* a load that moves are not infinite under: A times something */
-  double *u = calloc((size_t)m, sizeof *u);
+  FREED double *u = calloc((size_t)m, sizeof *u);
   for (int i = 0; i < m; ++i) u[i] = case_random(seed) - 0.3;
   contact_product(m, c->A, u, c->f);
-  free(u);
-  free(G);
 }
 
 static void give_compliance(problem *p) {
@@ -187,7 +183,7 @@ static void same_in_units(const solver_ops *ops, int k, problem *p, double tol,
   const int length = powers[k / 4 % 2][0], force = powers[k / 4 % 2][1];
   const contact_case *c = &p->c;
   const size_t size = (size_t)c->cp.m * sizeof *c->u;
-  double *answer = malloc(2 * size);
+  FREED double *answer = malloc(2 * size);
   memcpy(answer, c->u, size);
   memcpy(answer + c->cp.m, c->r, size);
   case_units(&p->c, length, force);
@@ -199,7 +195,6 @@ static void same_in_units(const solver_ops *ops, int k, problem *p, double tol,
                     memcmp(answer, c->u, size) == 0 &&
                     memcmp(answer + c->cp.m, c->r, size) == 0,
                 "%s: problem %d in other units", row_name(ops), k);
-  free(answer);
 }
 
 /* 1: solved, and the claim holds. */
@@ -302,7 +297,7 @@ static void must_solve(const char *name, int solved, int tried) {
 }
 
 /* The slices are tests of their own: the checks of one that fails name it. */
-START_TEST(every_row_is_right_or_says_so) {
+TESTS(every_row_is_right_or_says_so, SLICES) {
   tally t = {0};
   const solver_ops *ops;
   for (int k = _i; k < asked("PROTIS_PROBLEMS", 150); k += SLICES)
@@ -317,7 +312,6 @@ START_TEST(every_row_is_right_or_says_so) {
   }
   points_end(&(points){.kind = "random contact problems", .tried = t.tried});
 }
-END_TEST
 
 /* ---- sparse compliances ---------------------------------------------------
  */
@@ -355,7 +349,7 @@ static void run_planted(int k, int *solved) {
 }
 
 /* DRIFTS: forces in equilibrium with one another drift on, by less and less. */
-START_TEST(planted_answer_of_many_bodies_is_found) {
+TESTS(planted_answer_of_many_bodies_is_found, SLICES) {
   enum { DRIFTS = 994 };
   const int most = asked("PROTIS_PROBLEMS", 150) / 6;
   int solved[MOST_ROWS] = {0}, tried = 0;
@@ -371,12 +365,5 @@ START_TEST(planted_answer_of_many_bodies_is_found) {
                     solved[i], tried);
   points_end(&(points){.kind = "planted problems of bodies", .tried = tried});
 }
-END_TEST
 
-int main(void) {
-  TCase *all = tcase_create("conformance");
-  tcase_set_timeout(all, 10 * UNIT_SECONDS);
-  tcase_add_loop_test(all, every_row_is_right_or_says_so, 0, SLICES);
-  tcase_add_loop_test(all, planted_answer_of_many_bodies_is_found, 0, SLICES);
-  return unit_run("conformance", all);
-}
+UNIT_MAIN_FOR("conformance", 10 * UNIT_SECONDS)

@@ -1,5 +1,4 @@
 /* src/contact/contact.c */
-#include "base/base.h"
 #include "contact/contact.h"
 #include "contact/formulation.h"
 #include "contact/active.h"
@@ -15,8 +14,8 @@ static contact_case one_node(double kn, double kt, double mu) {
   return c;
 }
 
-START_TEST(residual_is_zero_for_solved_node) {
-  contact_case c = one_node(4.0, 2.0, 0.5);
+TEST(residual_is_zero_for_solved_node) {
+  CONTACT_CASE c = one_node(4.0, 2.0, 0.5);
   /* stick */
   c.f[0] = 8.0;
   c.f[1] = 3.0;
@@ -33,15 +32,13 @@ START_TEST(residual_is_zero_for_solved_node) {
   u[1] = 2.5;
   r[0] = r[1] = 0.0;
   ck_assert(contact_residual(&c.cp, u, r) == 0.0);
-  case_free(&c);
 }
-END_TEST
 
 /* The last of any number of nodes counts, what stands behind it does not. */
-START_TEST(residual_is_that_of_all_nodes) {
+TEST(residual_is_that_of_all_nodes) {
   enum { MOST = 140, BEHIND = 2 * MOST };
   for (int n = 1; n <= MOST; ++n) {
-    contact_case c = case_new(2, BEHIND, 0.5);
+    CONTACT_CASE c = case_new(2, BEHIND, 0.5);
     double u[2 * BEHIND], r[2 * BEHIND];
     for (int i = 0; i < 2 * BEHIND; ++i) {
       u[i] = 0.0;
@@ -54,13 +51,11 @@ START_TEST(residual_is_that_of_all_nodes) {
     ck_assert_msg(contact_residual(&c.cp, u, r) == 0.0, "%d nodes", n);
     r[2 * n - 2] = -7.2;
     ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.1, 1e-13);
-    case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(each_broken_condition_shows_by_its_size) {
-  contact_case c = one_node(4.0, 2.0, 0.5);
+TEST(each_broken_condition_shows_by_its_size) {
+  CONTACT_CASE c = one_node(4.0, 2.0, 0.5);
   c.f[0] = 8.0;
   c.f[1] = 5.0; /* scale 8; exact: u = (0, 0.5), r = (-8, -4)                */
   double tol = 1e-13;
@@ -77,12 +72,10 @@ START_TEST(each_broken_condition_shows_by_its_size) {
                           1.0, tol);
   double apart_u[2] = {0.0, 0.5}, apart_r[2] = {-8.8, -4.4};
   ck_assert_double_eq_tol(contact_residual(&c.cp, apart_u, apart_r), 0.1, tol);
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(scale_is_above_rounding_of_loads_and_of_the_way) {
-  contact_case c = one_node(4.0, 2.0, 0.5);
+TEST(scale_is_above_rounding_of_loads_and_of_the_way) {
+  CONTACT_CASE c = one_node(4.0, 2.0, 0.5);
   c.f[0] = 1e-9;
   c.gap[0] = 1.0;
   ck_assert(contact_scale(&c.cp) == 1e-9);
@@ -96,14 +89,12 @@ START_TEST(scale_is_above_rounding_of_loads_and_of_the_way) {
   ck_assert(contact_residual(&c.cp, u, r) == 0.0);
   r[0] = 3e-10;
   ck_assert_double_ge(contact_residual(&c.cp, u, r), 7e-11);
-  case_free(&c);
 }
-END_TEST
 
 /* Two springs of 4 and 4e-8 N/m pressed by 1 and 1e-12 N: the force of the weak
  * one misses a tenth, whatever the loads of the other come to. */
-START_TEST(weak_body_is_judged_by_its_own_loads) {
-  contact_case c = case_new(2, 2, 0.0);
+TEST(weak_body_is_judged_by_its_own_loads) {
+  CONTACT_CASE c = case_new(2, 2, 0.0);
   const double load[2] = {1.0, 1e-12}, spring[2] = {4.0, 4e-8};
   double u[4] = {0}, r[4] = {0};
   for (int i = 0; i < 2; ++i) {
@@ -115,9 +106,7 @@ START_TEST(weak_body_is_judged_by_its_own_loads) {
   ck_assert(contact_residual(&c.cp, u, r) == 0.0);
   r[2] *= 0.9;
   ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.1, 1e-3);
-  case_free(&c);
 }
-END_TEST
 
 /* Two nodes on a spring of 4, in weak springs. */
 static contact_case free_body(double spring) {
@@ -129,27 +118,25 @@ static contact_case free_body(double spring) {
 
 /* A force of 1e-12 on a body that is on its way to, or from its obstacle: it
  * counts over 2^-14 of the force that the shorter of way and gap makes. */
-START_TEST(free_fall_through_a_gap_is_in_the_scale) {
+TEST(free_fall_through_a_gap_is_in_the_scale) {
   static const double way[] = {0.5, -1.0}, gap[] = {2.0, -0.25};
   for (int k = 0; k < 2; ++k) {
-    contact_case c = free_body(0.0);
+    CONTACT_CASE c = free_body(0.0);
     const double u[4] = {way[k], 0, way[k], 0}, r[4] = {0};
     const double least = 0x1p-14 * 4 * fmin(fabs(way[k]), fabs(gap[k]));
     c.gap[0] = c.gap[1] = gap[k];
     c.f[0] = 1e-12;
     ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 1e-12 / least,
                             0.05e-12 / least);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Far from its obstacle by a weak load: a drift, but not where that is no rigid
  * motion, nor where the body has been. */
-START_TEST(soft_body_does_not_drift) {
+TEST(soft_body_does_not_drift) {
   static const double along[4] = {0, M_SQRT1_2, 0, M_SQRT1_2};
   for (int known = 0; known < 3; ++known) {
-    contact_case c = free_body(0x1p-20);
+    CONTACT_CASE c = free_body(0x1p-20);
     const double u[4] = {-1, 0, -1, 0}, r[4] = {0};
     c.f[0] = c.f[2] = -0x1p-20;
     c.cp.floating = 1;
@@ -163,15 +150,13 @@ START_TEST(soft_body_does_not_drift) {
     c.gap[0] = c.gap[1] = HUGE_VAL;
     c.cp.ut0 = stick + 1;
     ck_assert((contact_residual(&c.cp, u, r) > 0.0) == !known);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A free body that lies on its obstacle: the load that is left of 1 N is
  * rounding, and so is what it presses. */
-START_TEST(rounding_of_the_loads_is_no_load) {
-  contact_case c = free_body(0.0);
+TEST(rounding_of_the_loads_is_no_load) {
+  CONTACT_CASE c = free_body(0.0);
   const double u[4] = {-0.25, 0.0, -0.25, 0.0}, r[4] = {-1e-16, 0.0, 0.0, 0.0};
   contact_status state[2];
   c.gap[0] = c.gap[1] = -0.25;
@@ -182,12 +167,10 @@ START_TEST(rounding_of_the_loads_is_no_load) {
     ck_assert_int_eq(state[0], known ? CONTACT_OPEN : CONTACT_SLIP);
     ck_assert(contact_hidden(&c.cp, u, r, NULL) == 0.0 || !known);
   }
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(scale_is_of_the_problem) {
-  contact_case c = one_node(4.0, 2.0, 0.5);
+TEST(scale_is_of_the_problem) {
+  CONTACT_CASE c = one_node(4.0, 2.0, 0.5);
   ck_assert(contact_scale(&c.cp) == 0.0);
   double u[2] = {0.0, 0.0}, r[2] = {0.0, 0.0};
   ck_assert(contact_residual(&c.cp, u, r) == 0.0);
@@ -217,12 +200,10 @@ START_TEST(scale_is_of_the_problem) {
   c.cp.A = NULL;
   c.f[0] = 0.5;
   ck_assert(contact_scale(&c.cp) == 6.0 - 3.0);
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(stiffness_of_tangents_and_of_a_motion) {
-  contact_case c = case_new(3, 1, 0.5);
+TEST(stiffness_of_tangents_and_of_a_motion) {
+  CONTACT_CASE c = case_new(3, 1, 0.5);
   unsigned char held[3] = {0, 0, 0};
   const double v[3] = {0.0, 0.0, 10.0};
   c.A[0] = 4.0;
@@ -237,23 +218,19 @@ START_TEST(stiffness_of_tangents_and_of_a_motion) {
   ck_assert(contact_tangent_diagonal(&c.cp, 0, 7.0) == 3.0);
   held[2] = 1;
   ck_assert(contact_tangent_diagonal(&c.cp, 0, 7.0) == 7.0);
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(closed_gap_counts_where_it_is_nearer) {
-  contact_case c = one_node(4.0, 2.0, 0.0);
+TEST(closed_gap_counts_where_it_is_nearer) {
+  CONTACT_CASE c = one_node(4.0, 2.0, 0.0);
   c.gap[0] = 1.0;
   c.f[0] = 4.0 + 0.01; /* brings it to the obstacle and pushes with 0.01     */
   ck_assert_double_eq_tol(contact_scale(&c.cp), 0.01, 1e-12);
   c.gap[0] = 1000.0; /* out of reach                                         */
   ck_assert(contact_scale(&c.cp) == 4.01);
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(nan_anywhere_gives_nan) {
-  contact_case c = case_any(3, 3, 0.5, 0, 5);
+TEST(nan_anywhere_gives_nan) {
+  CONTACT_CASE c = case_any(3, 3, 0.5, 0, 5);
   double *all[] = {c.A, c.f, c.gap, c.ut0, c.g0, c.B->val, c.u, c.r};
   for (size_t k = 0; k < sizeof all / sizeof *all; ++k) {
     c.r[0] = -1.0; /* so that mu matters                                     */
@@ -263,13 +240,11 @@ START_TEST(nan_anywhere_gives_nan) {
     ck_assert_msg(isnan(contact_residual(&c.cp, c.u, c.r)), "array %zu", k);
     all[k][0] = old;
   }
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(factors_of_two_leave_every_bit) {
+TEST(factors_of_two_leave_every_bit) {
   for (int seed = 1; seed < 40; ++seed) {
-    contact_case c = case_any(2 + seed % 2, 1 + seed, 0.7, seed % 2,
+    CONTACT_CASE c = case_any(2 + seed % 2, 1 + seed, 0.7, seed % 2,
                               (unsigned long long)seed);
     unsigned long long s = 77u + (unsigned long long)seed;
     int m = c.cp.m, n = c.cp.n;
@@ -286,13 +261,11 @@ START_TEST(factors_of_two_leave_every_bit) {
     for (int i = 0; i < m - n; ++i) c.ut0[i] *= 0x1p-17;
     ck_assert(contact_residual(&c.cp, c.u, c.r) == before);
     ck_assert(before > 0.0);
-    case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(disc_is_exact_at_any_angle) {
-  contact_case c = case_new(3, 1, 0.25);
+TEST(disc_is_exact_at_any_angle) {
+  CONTACT_CASE c = case_new(3, 1, 0.25);
   for (int i = 0; i < 9; i += 4) c.A[i] = 2.0;
   for (int degree = 0; degree < 360; degree += 7) {
     double a = degree * acos(-1.0) / 180.0;
@@ -308,12 +281,10 @@ START_TEST(disc_is_exact_at_any_angle) {
     u[2] = (c.f[2] + r[2]) / 2.0;
     ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.02 / 8.0, 1e-12);
   }
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(compliance_form_measures_the_same_state) {
-  contact_case c = one_node(0.25, 0.5, 0.5); /* the inverse of diag(4, 2)    */
+TEST(compliance_form_measures_the_same_state) {
+  CONTACT_CASE c = one_node(0.25, 0.5, 0.5); /* the inverse of diag(4, 2)    */
   c.cp.W = c.A;
   c.cp.A = NULL;
   c.f[0] = 2.0; /* q = W f, f = (8, 5)                                        */
@@ -330,12 +301,10 @@ START_TEST(compliance_form_measures_the_same_state) {
   ck_assert(contact_residual(&c.cp, u, r) == 0.0);
   r[1] = -2.4;
   ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.1, 1e-13);
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(statuses_of_a_row_of_nodes) {
-  contact_case c = case_new(2, 4, 0.5);
+TEST(statuses_of_a_row_of_nodes) {
+  CONTACT_CASE c = case_new(2, 4, 0.5);
   for (int i = 0; i < 8; ++i) c.A[i + 8 * i] = 2.0;
   double f[8] = {-1, 1, 4, 1, 4, 3, 0, 0};
   memcpy(c.f, f, sizeof f);
@@ -355,31 +324,27 @@ START_TEST(statuses_of_a_row_of_nodes) {
   contact_stops(&c.cp, u, r, 1, force, stopped);
   ck_assert_mem_eq(stopped, known, sizeof known);
   ck_assert(force[4] == -4.0 && force[6] == 0.0);
-  case_free(&c);
 }
-END_TEST
 
 /* Friction within the rounding, over the limit of the node, not less than what
  * is called none; over the given force where that is larger. */
-START_TEST(hidden_friction_is_a_part_of_the_limit) {
+TEST(hidden_friction_is_a_part_of_the_limit) {
   static const double mu[] = {1e-12, 0.5, 2.0}, part[] = {0x1p-30, 0.5, 1.0};
   const double u[2] = {0.0, 1e-17}, r[2] = {-8.0, 0.0}, own = 16.0;
   for (int k = 0; k < 3; ++k) {
-    contact_case c = one_node(4.0, 2.0, mu[k]);
+    CONTACT_CASE c = one_node(4.0, 2.0, mu[k]);
     const double want = 2e-17 / (part[k] * 8.0);
     c.f[0] = 8.0;
     ck_assert_double_eq_tol(contact_hidden(&c.cp, u, r, NULL) / want, 1, 1e-12);
     ck_assert_double_eq_tol(contact_hidden(&c.cp, u, r, &own) / want, 0.5,
                             1e-12);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Of open nodes, and where they pull; not tangential forces of a given limit,
  * nor what presses a closed node. */
-START_TEST(forces_of_rounding_are_dropped) {
-  contact_case c = case_new(2, 5, 0.5);
+TEST(forces_of_rounding_are_dropped) {
+  CONTACT_CASE c = case_new(2, 5, 0.5);
   for (int i = 0; i < 10; ++i) c.A[i + 10 * i] = 2.0;
   const double f[10] = {-1, 1, 4, 1, -2, 3, 0, 1, -2}, u[10] = {-0.5, 0.5};
   double r[10] = {-1e-17, -1e-17, -4, -1e-17, 1e-17, -2, -1e-17, 0, 1e-3};
@@ -387,14 +352,12 @@ START_TEST(forces_of_rounding_are_dropped) {
   contact_drop_roundings(&c.cp, u, r);
   static const double left[10] = {0, 0, -4, -1e-17, 0, -2, -1e-17, 0, 1e-3};
   ck_assert_mem_eq(r, left, sizeof r);
-  case_free(&c);
 }
-END_TEST
 
 /* At its limit a node sticks as long as it has not moved. */
-START_TEST(node_at_its_limit_sticks_until_it_moves) {
+TEST(node_at_its_limit_sticks_until_it_moves) {
   static const double slip[] = {0.0, 1e-12, 1e-6};
-  contact_case c = one_node(4.0, 2.0, 0.5);
+  CONTACT_CASE c = one_node(4.0, 2.0, 0.5);
   for (int k = 0; k < 3; ++k) {
     double u[2] = {0.0, slip[k]}, r[2] = {-8.0, -4.0};
     contact_status s;
@@ -403,12 +366,10 @@ START_TEST(node_at_its_limit_sticks_until_it_moves) {
     contact_classify(&c.cp, u, r, &s);
     ck_assert_int_eq(s, k < 2 ? CONTACT_STICK : CONTACT_SLIP);
   }
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(second_obstacle_bounds_the_tangent) {
-  contact_case c = one_node(4.0, 2.0, 0.0);
+TEST(second_obstacle_bounds_the_tangent) {
+  CONTACT_CASE c = one_node(4.0, 2.0, 0.0);
   double side[1] = {0.5};
   c.cp.side_gap = side;
   c.f[0] = 8.0;
@@ -418,12 +379,10 @@ START_TEST(second_obstacle_bounds_the_tangent) {
   double through_u[2] = {0.0, 1.5}, through_r[2] = {-8.0, 0.0};
   ck_assert_double_eq_tol(contact_residual(&c.cp, through_u, through_r), 0.25,
                           1e-13);
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(held_tangent_takes_no_friction) {
-  contact_case c = one_node(4.0, 2.0, 0.5);
+TEST(held_tangent_takes_no_friction) {
+  CONTACT_CASE c = one_node(4.0, 2.0, 0.5);
   unsigned char held[2] = {0, 1};
   c.cp.held = held;
   c.f[0] = 8.0;
@@ -431,13 +390,11 @@ START_TEST(held_tangent_takes_no_friction) {
   double u[2] = {0.0, 1e6}, r[2] = {-8.0, 0.0};
   ck_assert(contact_scale(&c.cp) == 8.0);
   ck_assert(contact_residual(&c.cp, u, r) == 0.0);
-  case_free(&c);
 }
-END_TEST
 
 /* An obstacle far away, a body far away: the forces count, not the way. */
-START_TEST(what_only_carries_is_not_in_the_scale) {
-  contact_case c = one_node(4.0, 2.0, 0.5);
+TEST(what_only_carries_is_not_in_the_scale) {
+  CONTACT_CASE c = one_node(4.0, 2.0, 0.5);
   c.f[0] = 8.0;
   c.ut0[0] = 0x1p+30;
   double u[2] = {0.0, 2.0}, r[2] = {-8.0, 4.0};
@@ -455,14 +412,12 @@ START_TEST(what_only_carries_is_not_in_the_scale) {
   u[1] = 0x1p+30 - 1.0;
   r[1] = -2.0;
   ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 2.0 / 8.0, 1e-4);
-  case_free(&c);
 }
-END_TEST
 
 /* A million times the load, the stiffness, the compliance of the other. */
-START_TEST(bodies_are_measured_apart) {
+TEST(bodies_are_measured_apart) {
   for (int form = 0; form < 3; ++form) {
-    contact_case c = case_new(2, 2, 0.5);
+    CONTACT_CASE c = case_new(2, 2, 0.5);
     double stiff = form == 0 ? 1.0 : 1e6, heavy = form == 0 ? 1e6 : 1.0;
     for (int i = 0; i < 4; ++i) c.A[5 * i] = i < 2 ? stiff : 1.0;
     double f[4] = {8 * heavy, 5 * heavy, 8, 5};
@@ -481,17 +436,15 @@ START_TEST(bodies_are_measured_apart) {
     ck_assert_double_le(contact_residual(&c.cp, u, r), 1e-13);
     r[wrong] *= 1.01; /* 1 % of its normal force                              */
     ck_assert_double_ge(contact_residual(&c.cp, u, r), 0.009);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Two nodes of one body, the first a million times stiffer. What a node misses
  * counts against the forces of the body, but not against more than what its
  * own stiffness times the largest motion of the body makes. */
-START_TEST(unlike_nodes_of_a_body_are_measured_apart) {
+TEST(unlike_nodes_of_a_body_are_measured_apart) {
   for (int k = 0; k < 4; ++k) {
-    contact_case c = case_new(2, 2, 0.5);
+    CONTACT_CASE c = case_new(2, 2, 0.5);
     const int compliance = k / 2, soft_moves = k % 2;
     const double soft = soft_moves ? 1.0 : 1e-6; /* its forces               */
     const int wrong = soft_moves ? 0 : 2;
@@ -514,33 +467,28 @@ START_TEST(unlike_nodes_of_a_body_are_measured_apart) {
     r[wrong] *= 1.01; /* 1 % of its normal force                             */
     ck_assert_double_ge(contact_residual(&c.cp, u, r), 0.009);
     ck_assert_double_le(contact_residual(&c.cp, u, r), 0.04 / force[wrong / 2]);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Whichever of two nodes comes first. */
-START_TEST(nodes_of_which_one_feels_the_other_are_a_body) {
+TEST(nodes_of_which_one_feels_the_other_are_a_body) {
   for (int k = 0; k < 2; ++k) {
-    contact_case c = case_new(2, 2, 0.5);
-    contact_bodies *b = NULL;
+    CONTACT_CASE c = case_new(2, 2, 0.5);
+    OWNED contact_bodies *b = NULL;
     for (int i = 0; i < 4; ++i) c.A[5 * i] = 1;
     c.A[k == 0 ? 2 : 8] = 0.5;
     ck_assert_int_eq(contact_bodies_new(&c.cp, &b), OK);
     ck_assert_int_eq(b->n, 1);
-    memory_free(b);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Bodies and residual of any u, r from the blocks and from all entries. */
-START_TEST(blocks_give_the_residual_of_all_entries) {
+TEST(blocks_give_the_residual_of_all_entries) {
   for (int k = 0; k < 12; ++k) {
     unsigned long long seed = 31u + (unsigned)k;
     planted p = planted_new((planted_kind)(k % 4), 2 + k / 4 % 2, 9, 0.4, seed);
     contact_problem all = p.cp;
-    contact_bodies *one = NULL, *two = NULL;
+    OWNED contact_bodies *one = NULL, *two = NULL;
     all.W = p.W;
     all.blocks = NULL;
     ck_assert_int_eq(contact_bodies_new(&p.cp, &one), OK);
@@ -570,20 +518,17 @@ START_TEST(blocks_give_the_residual_of_all_entries) {
     double want = contact_residual(&all, p.u, p.r);
     ck_assert_double_le(fabs(have - want), 1e-12 * fmax(1.0, want));
     ck_assert((want > 1e-6) == (k % 3 > 0));
-    memory_free(one);
-    memory_free(two);
     planted_free(&p);
   }
 }
-END_TEST
 
 /* Every value is its own place in the whole problem. */
-START_TEST(active_nodes_take_their_own_data) {
+TEST(active_nodes_take_their_own_data) {
   enum { N = 6, IN = 2 };
   const double gap[N] = {9, 1, 8, 7, 2, 6};
   const int in[IN] = {1, 4};
   for (int dim = 2; dim <= 3; ++dim) {
-    contact_case c = case_new(dim, N, 0.5);
+    CONTACT_CASE c = case_new(dim, N, 0.5);
     active_nodes x = {.distance = 3.0};
     active_part part;
     memcpy(c.gap, gap, sizeof gap);
@@ -608,15 +553,13 @@ START_TEST(active_nodes_take_their_own_data) {
     }
     active_part_free(&part);
     active_free(&x);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Two nodes whose normals move as one, to the last digits: no given forces have
  * an answer. Of stiffer normals they have. */
 /* Nodes stay that once were taken; after two distances all are. */
-START_TEST(active_nodes_become_more) {
+TEST(active_nodes_become_more) {
   enum { N = 5 };
   static const double gap[N] = {200, 1, 100, 300, 400};
   static const double u_n[3][N] = {{0, 0, 101}, {0}, {0}};
@@ -631,15 +574,14 @@ START_TEST(active_nodes_become_more) {
   }
   active_free(&x);
 }
-END_TEST
 
 /* From 1 to 1e-17, the place of a bound or of stick: there to the last bit. The
  * load that is left is 0.5 and rounding. */
-START_TEST(increment_ends_on_its_bounds) {
+TEST(increment_ends_on_its_bounds) {
   const double place = 1e-17, force[2] = {0.0, 0.0};
   for (int side = 0; side < 2; ++side) {
-    contact_case c = one_node(4.0, 2.0, 0.5);
-    velocity_form *v = NULL;
+    CONTACT_CASE c = one_node(4.0, 2.0, 0.5);
+    OWNED velocity_form *v = NULL;
     contact_problem left;
     double u[2] = {place, place}, *start = u;
     c.gap[0] = place;
@@ -656,14 +598,11 @@ START_TEST(increment_ends_on_its_bounds) {
     ck_assert(start[0] == -1.0 && start[1] == -1.0);
     velocity_form_apply(v, &c.cp, u);
     ck_assert(u[0] == place && u[1] == place);
-    memory_free(v);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Limits by the pressures of three nodes, two of them given: 1 + 2 + 6. */
-START_TEST(given_pressures_are_in_the_limits) {
+TEST(given_pressures_are_in_the_limits) {
   int start[4] = {0, 3, 6, 9}, column[9];
   double part[9], u[6], r[6];
   const int known[2] = {1, 2};
@@ -673,9 +612,9 @@ START_TEST(given_pressures_are_in_the_limits) {
     part[e] = 0.1 * (e % 3 + 1);
   }
   const sparse_rows all = {.n = 3, .start = start, .col = column, .val = part};
-  contact_case c = case_new(2, 3, 0.5);
+  CONTACT_CASE c = case_new(2, 3, 0.5);
   contact_problem out;
-  given_form *g = NULL;
+  OWNED given_form *g = NULL;
   for (int i = 0; i < 6; ++i) c.A[7 * i] = 2.0;
   for (int i = 0; i < 3; ++i) c.g0[i] = 1.0;
   c.cp.B = &all;
@@ -684,16 +623,13 @@ START_TEST(given_pressures_are_in_the_limits) {
   for (int i = 0; i < 3; ++i) ck_assert_double_eq_tol(out.g0[i], 9.0, 1e-14);
   for (int e = 0; e < 9; ++e)
     ck_assert(out.B->val[e] == (e % 3 > 0 ? 0.0 : 0.1));
-  memory_free(g);
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(normals_that_move_as_one_carry_no_given_forces) {
+TEST(normals_that_move_as_one_carry_no_given_forces) {
   static const int node[] = {0, 1};
   for (int k = 0; k < 2; ++k) {
-    contact_case c = case_new(2, 2, 0.3);
-    given_form *g = NULL;
+    CONTACT_CASE c = case_new(2, 2, 0.3);
+    OWNED given_form *g = NULL;
     c.A[0] = c.A[5] = c.A[15] = 1.0;
     c.A[2] = c.A[8] = -0.75;
     c.A[10] = 0.75 * 0.75 * (1.0 + (k == 0 ? 0x1p-50 : 0x1p-20));
@@ -702,29 +638,7 @@ START_TEST(normals_that_move_as_one_carry_no_given_forces) {
     if (k == 0)
       ck_assert_str_eq(status_message(),
                        "nothing holds the body against given normal forces");
-    memory_free(g);
-    case_free(&c);
   }
 }
-END_TEST
 
-UNIT_MAIN("contact", normals_that_move_as_one_carry_no_given_forces,
-          active_nodes_take_their_own_data,
-          blocks_give_the_residual_of_all_entries,
-          residual_is_zero_for_solved_node, residual_is_that_of_all_nodes,
-          each_broken_condition_shows_by_its_size,
-          weak_body_is_judged_by_its_own_loads, scale_is_of_the_problem,
-          stiffness_of_tangents_and_of_a_motion,
-          scale_is_above_rounding_of_loads_and_of_the_way,
-          rounding_of_the_loads_is_no_load,
-          free_fall_through_a_gap_is_in_the_scale, soft_body_does_not_drift,
-          closed_gap_counts_where_it_is_nearer, nan_anywhere_gives_nan,
-          factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
-          compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,
-          node_at_its_limit_sticks_until_it_moves, increment_ends_on_its_bounds,
-          given_pressures_are_in_the_limits,
-          hidden_friction_is_a_part_of_the_limit, active_nodes_become_more,
-          forces_of_rounding_are_dropped, second_obstacle_bounds_the_tangent,
-          held_tangent_takes_no_friction, what_only_carries_is_not_in_the_scale,
-          bodies_are_measured_apart, unlike_nodes_of_a_body_are_measured_apart,
-          nodes_of_which_one_feels_the_other_are_a_body)
+UNIT_MAIN("contact")

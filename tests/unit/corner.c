@@ -1,13 +1,12 @@
 /* src/contact/surface.c where a node is in several contacts: corners, obstacles
  * side by side and below one another. */
-#include "base/base.h"
 #include "contact/friction.h"
 #include "support/faces.h"
 #include "support/formula.h"
 #include "support/unit.h"
 
-START_TEST(corner_on_two_obstacles_has_both_normals) {
-  face_scene c;
+TEST(corner_on_two_obstacles_has_both_normals) {
+  FACE_SCENE c;
   faces_two_sides(&c);
   c.support[1] = (obstacle){
       .name = "GROUND", .shape = OBSTACLE_PLANE, .direction = {0, 1, 0}};
@@ -36,18 +35,16 @@ START_TEST(corner_on_two_obstacles_has_both_normals) {
   surface_tangent(c.s, 2, 1, t);
   ck_assert(t[0] == 0 && t[1] == -1);
   ck_assert_int_eq(faces_said(&c, "P4"), 0);
-  faces_end(&c);
 }
-END_TEST
 
 /* The normal force of a corner is that of its first contact, whose averages of
  * the pressure have it alone. */
-START_TEST(corner_presses_in_its_first_contact) {
+TEST(corner_presses_in_its_first_contact) {
   const friction_ops *law = &nonlocal_friction;
   char why[160];
-  void *param = calloc(1, law->param_size);
+  FREED void *param = calloc(1, law->param_size);
   const friction_card card = {.param = param};
-  face_scene c;
+  FACE_SCENE c;
   option_defaults(law->options, param);
   ck_assert_int_eq(option_read(option_find(law->options, "RADIUS"), "10.",
                                param, why, sizeof why),
@@ -63,25 +60,20 @@ START_TEST(corner_presses_in_its_first_contact) {
     ck_assert_int_eq(n, id == 0 ? 3 : 0);
     sparse_free(&G);
   }
-  free(param);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(corner_with_friction_is_warned_about_once) {
-  face_scene c;
+TEST(corner_with_friction_is_warned_about_once) {
+  FACE_SCENE c;
   faces_two_sides(&c);
   c.pair[1].friction = 1;
   ck_assert_int_eq(faces_build(&c), OK);
   ck_assert_int_eq(faces_said(&c, "P4005"), 1);
   ck_assert_int_eq(faces_said(&c, "node 1002"), 1);
-  faces_end(&c);
 }
-END_TEST
 
 /* A corner whose wall direction is fixed stays on the floor alone. */
-START_TEST(fixed_side_of_a_corner_is_dropped) {
-  face_scene c;
+TEST(fixed_side_of_a_corner_is_dropped) {
+  FACE_SCENE c;
   faces_two_sides(&c);
   c.fixed[2] = 1;
   ck_assert_int_eq(faces_build(&c), OK);
@@ -90,15 +82,13 @@ START_TEST(fixed_side_of_a_corner_is_dropped) {
   ck_assert_int_eq(c.s->held[5], 1);
   ck_assert_double_eq(c.s->area[2], 0.125);
   ck_assert_int_eq(faces_said(&c, "P4002"), 1);
-  faces_end(&c);
 }
-END_TEST
 
 /* One obstacle, one smooth surface: its parts share the node in between, with
  * the mean of their normals by area, (-0.1, -0.5). */
-START_TEST(contacts_side_by_side_on_one_obstacle_are_one_surface) {
+TEST(contacts_side_by_side_on_one_obstacle_are_one_surface) {
   const double length = hypot(0.25, 0.1);
-  face_scene c;
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   c.x[1] = 0.1;
   faces_contact(&c, "LEFT", 0, 1);
@@ -114,12 +104,10 @@ START_TEST(contacts_side_by_side_on_one_obstacle_are_one_surface) {
   ck_assert_double_eq_tol(c.s->frame[4], -sqrt(1.0 / 26), 1e-15);
   ck_assert_double_eq_tol(c.s->frame[5], -sqrt(25.0 / 26), 1e-15);
   ck_assert_int_eq(faces_said(&c, "P4"), 0);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(parallel_normals_on_two_moving_obstacles_are_an_error) {
-  face_scene c;
+TEST(parallel_normals_on_two_moving_obstacles_are_an_error) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "LEFT", 0, 1);
   faces_contact(&c, "RIGHT", 1, 4);
@@ -129,12 +117,10 @@ START_TEST(parallel_normals_on_two_moving_obstacles_are_an_error) {
   ck_assert_int_eq(faces_said(&c, "P4006"), 1);
   ck_assert_int_eq(faces_said(&c, "node 1001"), 1);
   formula_release(&c.support[1].motion[1]);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(obstacles_side_by_side_share_a_node) {
-  face_scene c;
+TEST(obstacles_side_by_side_share_a_node) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "LEFT", 0, 1);
   faces_contact(&c, "RIGHT", 1, 4);
@@ -145,14 +131,12 @@ START_TEST(obstacles_side_by_side_share_a_node) {
   ck_assert_double_eq(c.s->area[1], 0.25);
   ck_assert_double_eq_tol(faces_area(c.s), 1, 1e-15);
   ck_assert_int_eq(faces_said(&c, "P4"), 0);
-  faces_end(&c);
 }
-END_TEST
 
 /* Two slopes below one group, which meet at x = 1/2. */
-START_TEST(of_two_obstacles_at_rest_the_nearer_counts) {
+TEST(of_two_obstacles_at_rest_the_nearer_counts) {
   static const double gap[] = {0, 0.1875, 0.375, 0.1875, 0};
-  face_scene c;
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "LEFT", 0, 4);
   faces_contact(&c, "RIGHT", 0, 4);
@@ -169,13 +153,11 @@ START_TEST(of_two_obstacles_at_rest_the_nearer_counts) {
   }
   ck_assert_double_eq_tol(faces_area(c.s), 1, 1e-15);
   ck_assert_int_eq(faces_said(&c, "P4006"), 0);
-  faces_end(&c);
 }
-END_TEST
 
 /* The tip of a wedge in a groove, held across it, is on both sides. */
-START_TEST(tip_that_is_held_across_a_groove_stands_in_it) {
-  face_scene c;
+TEST(tip_that_is_held_across_a_groove_stands_in_it) {
+  FACE_SCENE c;
   faces_begin(&c, 2);
   faces_node(&c, -1, 1, 0);
   faces_node(&c, 0, 0, 0);
@@ -190,16 +172,14 @@ START_TEST(tip_that_is_held_across_a_groove_stands_in_it) {
   ck_assert_double_eq_tol(c.s->frame[4], 0, 1e-15);
   ck_assert_double_eq_tol(c.s->frame[5], -1, 1e-15);
   ck_assert_double_eq_tol(c.s->area[1], sqrt(2), 1e-15);
-  faces_end(&c);
 }
-END_TEST
 
 /* A slab between two rollers that come nearer, its whole surface in contact
  * with both: each side is with the roller that it faces. */
-START_TEST(of_two_obstacles_that_behind_the_body_is_none) {
+TEST(of_two_obstacles_that_behind_the_body_is_none) {
   static const double radius[] = {2.9, 0.52}, away[] = {3, 0.2};
   for (int near = 0; near < 2; ++near) {
-    face_scene c;
+    FACE_SCENE c;
     faces_begin(&c, 2);
     for (int i = 0; i < 4; ++i) faces_node(&c, i == 1 || i == 2, i / 2, 0);
     faces_face(&c, 0, 1, 0);
@@ -225,14 +205,12 @@ START_TEST(of_two_obstacles_that_behind_the_body_is_none) {
     }
     ck_assert_int_eq(faces_said(&c, "2 nodes cannot reach"), 2);
     for (int k = 0; k < 2; ++k) formula_release(&c.support[k].motion[1]);
-    faces_end(&c);
   }
 }
-END_TEST
 
 /* Not a second contact that adds nothing. */
-START_TEST(faces_twice_at_one_place_are_an_error) {
-  face_scene c;
+TEST(faces_twice_at_one_place_are_an_error) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "FOOT", 0, 4);
   faces_contact(&c, "TOES", 0, 4);
@@ -240,12 +218,10 @@ START_TEST(faces_twice_at_one_place_are_an_error) {
   ck_assert_int_eq(faces_said(&c, "P4006"), 1);
   ck_assert_int_eq(faces_said(&c, "at 5 nodes, the first is node 1000"), 1);
   ck_assert_int_eq(faces_said(&c, "P4010"), 0);
-  faces_end(&c);
 }
-END_TEST
 
 /* Corner of a box on three obstacles, one in two contacts; edges on two. */
-START_TEST(cube_corner_stands_on_three_obstacles) {
+TEST(cube_corner_stands_on_three_obstacles) {
   face_scene c;
   faces_begin(&c, 3);
   int o = faces_node(&c, 0, 0, 0), x = faces_node(&c, 1, 0, 0);
@@ -270,11 +246,10 @@ START_TEST(cube_corner_stands_on_three_obstacles) {
   ck_assert_double_eq_tol(c.s->side_area[1], 0.5 / 3, 1e-16);
   faces_end(&c);
 }
-END_TEST
 
 /* At a corner each row moves with its own obstacle. */
-START_TEST(corner_moves_with_both_obstacles) {
-  face_scene c;
+TEST(corner_moves_with_both_obstacles) {
+  FACE_SCENE c;
   double gap[5], side[5], motion[10] = {0};
   faces_two_sides(&c);
   formula_compile(&c.support[0].motion[0], "-3*t");
@@ -288,14 +263,12 @@ START_TEST(corner_moves_with_both_obstacles) {
   ck_assert_double_eq(motion[5], -1);
   formula_release(&c.support[0].motion[0]);
   formula_release(&c.support[1].motion[1]);
-  faces_end(&c);
 }
-END_TEST
 
 /* A plane that turns passes a side by the arm to where the normal of the side
  * meets it: straight below the corner, 1 from the pivot. */
-START_TEST(side_of_a_corner_moves_where_its_own_normal_meets) {
-  face_scene c;
+TEST(side_of_a_corner_moves_where_its_own_normal_meets) {
+  FACE_SCENE c;
   double motion[10] = {0};
   faces_two_sides(&c);
   c.support[1] = (obstacle){.name = "GROUND",
@@ -310,21 +283,6 @@ START_TEST(side_of_a_corner_moves_where_its_own_normal_meets) {
   surface_drift(c.s, &c.in, 0, 0.25, motion);
   ck_assert_double_eq(motion[5], -0.25);
   formula_release(&c.support[1].angle);
-  faces_end(&c);
 }
-END_TEST
 
-UNIT_MAIN("corner", corner_on_two_obstacles_has_both_normals,
-          corner_presses_in_its_first_contact,
-          corner_with_friction_is_warned_about_once,
-          fixed_side_of_a_corner_is_dropped,
-          contacts_side_by_side_on_one_obstacle_are_one_surface,
-          parallel_normals_on_two_moving_obstacles_are_an_error,
-          obstacles_side_by_side_share_a_node,
-          of_two_obstacles_at_rest_the_nearer_counts,
-          tip_that_is_held_across_a_groove_stands_in_it,
-          of_two_obstacles_that_behind_the_body_is_none,
-          faces_twice_at_one_place_are_an_error,
-          cube_corner_stands_on_three_obstacles,
-          corner_moves_with_both_obstacles,
-          side_of_a_corner_moves_where_its_own_normal_meets)
+UNIT_MAIN("corner")

@@ -1,6 +1,5 @@
 /* src/fem/coupling.c and the stiffness of nodes that move with others: against
  * the definition of their displacements, row by row, and works by both. */
-#include "base/base.h"
 #include "fem/cluster/cluster.h"
 #include "fem/stiffness.h"
 #include "support/scene.h"
@@ -119,31 +118,27 @@ static void check_rows(const linked *l, const double *u, const double *v) {
     if (!moved[k / dim]) ck_assert_double_eq(u[k], v[k]);
 }
 
-START_TEST(displacements_are_relative_to_the_masters) {
+TESTS(displacements_are_relative_to_the_masters, 4) {
   linked l;
-  coupling *c;
+  OWNED coupling *c = NULL;
   linked_new(&l, 2 + _i % 2, pairs, _i < 2 ? none : ties);
   const size_t n = dofs(&l);
-  double *v = randoms(&l, n), *u = calloc(n, sizeof *u);
+  FREED double *v = randoms(&l, n), *u = calloc(n, sizeof *u);
   memcpy(u, v, n * sizeof *u);
   ck_assert_int_eq(coupling_new(&l.s->d, &c), OK);
   ck_assert_int_eq(c->n, _i < 2 ? 4 : 7);
   coupling_move(c, u);
   check_rows(&l, u, v);
-  memory_free(c);
-  free(u);
-  free(v);
   scene_free(l.s);
 }
-END_TEST
 
-START_TEST(loads_do_the_same_work_on_the_unknowns) {
+TESTS(loads_do_the_same_work_on_the_unknowns, 4) {
   linked l;
-  coupling *c;
+  OWNED coupling *c = NULL;
   linked_new(&l, 2 + _i % 2, pairs, _i < 2 ? none : ties);
   const size_t n = dofs(&l);
   double *v = randoms(&l, n), *F = randoms(&l, n), work = 0, moved = 0;
-  double *u = calloc(n, sizeof *u), *to = calloc(n, sizeof *to);
+  FREED double *u = calloc(n, sizeof *u), *to = calloc(n, sizeof *to);
   memcpy(u, v, n * sizeof *u);
   memcpy(to, F, n * sizeof *to);
   ck_assert_int_eq(coupling_new(&l.s->d, &c), OK);
@@ -154,25 +149,21 @@ START_TEST(loads_do_the_same_work_on_the_unknowns) {
     moved += to[i] * v[i];
   }
   ck_assert_double_eq_tol(moved, work, 1e-13);
-  memory_free(c);
-  free(to);
-  free(u);
   free(F);
   free(v);
   scene_free(l.s);
 }
-END_TEST
 
 /* Against the basis: the same at all others, nothing left at tied nodes but
  * where a support holds a component. */
-START_TEST(tied_nodes_pass_on_what_acts_on_them) {
+TESTS(tied_nodes_pass_on_what_acts_on_them, 2) {
   linked l;
-  coupling *c;
+  OWNED coupling *c = NULL;
   linked_new(&l, 2 + _i, NULL, ties);
   const size_t n = dofs(&l), dim = (size_t)(2 + _i);
   const size_t held = dim * 4 + 1; /* the first tied node, of three masters */
   for (size_t e = 0; e < 3; ++e) l.part[1][dim * e + 1] = 0;
-  double *F = randoms(&l, n), *to = calloc(n, sizeof *to);
+  FREED double *F = randoms(&l, n), *to = calloc(n, sizeof *to);
   memcpy(to, F, n * sizeof *to);
   ck_assert_int_eq(coupling_new(&l.s->d, &c), OK);
   coupling_load(c, to);
@@ -181,12 +172,8 @@ START_TEST(tied_nodes_pass_on_what_acts_on_them) {
     const int tied = c->of[i / dim] >= 0 && i != held;
     ck_assert_double_eq_tol(F[i], tied ? 0 : to[i], 1e-14);
   }
-  memory_free(c);
-  free(to);
-  free(F);
   scene_free(l.s);
 }
-END_TEST
 
 /* a'K b of the lower triangle. */
 static double form(const stiffness *k, const double *a, const double *b) {
@@ -223,9 +210,9 @@ static double *in_frames(const linked *l, const double *v) {
 }
 
 /* Elements alone, and with changes of volume that are averaged. */
-START_TEST(stiffness_does_the_same_work_on_the_unknowns) {
+TESTS(stiffness_does_the_same_work_on_the_unknowns, 4) {
   linked l;
-  cluster_set *clusters = NULL;
+  OWNED cluster_set *clusters = NULL;
   stiffness *plain, *k;
   linked_new(&l, 2 + _i % 2, pairs, ties);
   const cluster_input in = {l.s->m, 0, 1, l.s->section_id, (double[]){0.7}};
@@ -253,32 +240,18 @@ START_TEST(stiffness_does_the_same_work_on_the_unknowns) {
   }
   memory_free(plain);
   memory_free(k);
-  memory_free(clusters);
   scene_free(l.s);
 }
-END_TEST
 
-START_TEST(nodes_that_move_with_each_other_are_an_error) {
+TEST(nodes_that_move_with_each_other_are_an_error) {
   static const row circle[] = {
       {2, 1, {6}}, {3, 2, {1, 2}}, {6, 2, {0, 3}}, {.n = -1}};
   linked l;
-  coupling *c;
+  OWNED coupling *c = NULL;
   linked_new(&l, 2, NULL, circle);
   ck_assert_int_eq(coupling_new(&l.s->d, &c), ERR_MESH);
   ck_assert_ptr_nonnull(strstr(status_message(), "node 7 moves with"));
-  memory_free(c);
   scene_free(l.s);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("coupling");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, displacements_are_relative_to_the_masters, 0, 4);
-  tcase_add_loop_test(tests, loads_do_the_same_work_on_the_unknowns, 0, 4);
-  tcase_add_loop_test(tests, tied_nodes_pass_on_what_acts_on_them, 0, 2);
-  tcase_add_loop_test(tests, stiffness_does_the_same_work_on_the_unknowns, 0,
-                      4);
-  tcase_add_test(tests, nodes_that_move_with_each_other_are_an_error);
-  return unit_run("coupling", tests);
-}
+UNIT_MAIN("coupling")

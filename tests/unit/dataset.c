@@ -1,7 +1,6 @@
 /* src/base/archive: what an HDF5 file may not do, and what it may. */
 #include "base/archive/archive.h"
 #include "base/archive/dataset.h"
-#include "base/base.h"
 #include "base/system/input.h"
 #include "support/folder.h"
 #include "support/unit.h"
@@ -54,7 +53,7 @@ static hid_t parts(hsize_t size) {
 static const char *read_x(long most) {
   static char text[1024];
   hdf5_source s;
-  double *x = NULL;
+  OWNED double *x = NULL;
   long n = 0;
   text[0] = '\0';
   size_t before = memory_allocated();
@@ -65,7 +64,6 @@ static const char *read_x(long most) {
     snprintf(text, sizeof text, "%s", status_message());
     ck_assert_uint_lt(memory_allocated() - before, 1 << 16);
   }
-  memory_free(x);
   return text;
 }
 
@@ -77,7 +75,7 @@ static void must_say(long most, const char *wanted) {
     ck_assert_msg(strstr(text, wanted) != NULL, "'%s', not: %s", text, wanted);
 }
 
-START_TEST(data_of_other_files_are_refused) {
+TEST(data_of_other_files_are_refused) {
   begin();
   put_set(other, N, H5P_DEFAULT);
   hid_t f = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
@@ -108,9 +106,8 @@ START_TEST(data_of_other_files_are_refused) {
   must_say(N, "the data of /x stand in other files");
   end();
 }
-END_TEST
 
-START_TEST(links_inside_the_file_are_followed) {
+TEST(links_inside_the_file_are_followed) {
   begin();
   put_set(path, N, H5P_DEFAULT);
   hid_t f = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
@@ -120,10 +117,9 @@ START_TEST(links_inside_the_file_are_followed) {
   must_say(N, "");
   end();
 }
-END_TEST
 
 /* Deflate alone with --safe; without also what loses nothing. */
-START_TEST(packing_is_deflate) {
+TEST(packing_is_deflate) {
   begin();
   for (int safe = 0; safe < 2; ++safe) {
     ck_assert_int_eq(input_confine(safe ? folder : NULL), OK);
@@ -143,10 +139,9 @@ START_TEST(packing_is_deflate) {
   }
   end();
 }
-END_TEST
 
 /* Nothing is allocated for what cannot be there or is not wanted. */
-START_TEST(sizes_are_compared_first) {
+TEST(sizes_are_compared_first) {
   begin();
   hid_t made = parts(1 << 16);
   H5Pset_deflate(made, 9);
@@ -162,7 +157,6 @@ START_TEST(sizes_are_compared_first) {
   H5Pclose(made);
   end();
 }
-END_TEST
 
 /* ---- restart files ------------------------------------------------------- */
 
@@ -215,7 +209,7 @@ static void put_archive(int kind, hsize_t n) {
 }
 
 /* Nothing is allocated for arrays that do not stand in it. */
-START_TEST(restart_files_are_not_believed) {
+TEST(restart_files_are_not_believed) {
   static const struct {
     int kind;
     hsize_t n;
@@ -236,8 +230,5 @@ START_TEST(restart_files_are_not_believed) {
     end();
   }
 }
-END_TEST
 
-UNIT_MAIN("dataset", data_of_other_files_are_refused,
-          links_inside_the_file_are_followed, packing_is_deflate,
-          sizes_are_compared_first, restart_files_are_not_believed)
+UNIT_MAIN("dataset")

@@ -1,6 +1,5 @@
 /* src/deck: the grammar of the deck, good and wrong; each wrong deck with the
  * first line it is answered with. */
-#include "base/base.h"
 #include "support/decks.h"
 #include "support/unit.h"
 
@@ -80,7 +79,7 @@ static const good_deck good_decks[] = {
 };
 /* clang-format on */
 
-START_TEST(good_decks_have_their_cards) {
+TEST(good_decks_have_their_cards) {
   decks_enter();
   for (size_t i = 0; i < sizeof good_decks / sizeof *good_decks; ++i) {
     read_deck r = decks_read_good(good_decks[i].text);
@@ -91,7 +90,6 @@ START_TEST(good_decks_have_their_cards) {
   }
   decks_leave();
 }
-END_TEST
 
 /* ---- wrong decks ------------------------------------------------------- */
 
@@ -268,10 +266,9 @@ static const char *const wrong_formats[][2] = {
 static void check_wrong(const char *deck_text, const char *first,
                         const char *totals) {
   const char *number = strstr(first, "error P");
-  char closing[120];
-  snprintf(closing, sizeof closing,
-           number == NULL ? "%s" : "%s; protis --explain %.5s says what to do",
-           totals, number == NULL ? "" : number + strlen("error "));
+  PRINTED(closing,
+          number == NULL ? "%s" : "%s; protis --explain %.5s says what to do",
+          totals, number == NULL ? "" : number + strlen("error "));
   read_deck r = decks_read_text(deck_text);
   char *end = strchr(decks_messages(), '\n');
   ck_assert_msg(end != NULL, "no message for\n%s", deck_text);
@@ -285,30 +282,26 @@ static void check_wrong(const char *deck_text, const char *first,
   decks_done(&r);
 }
 
-START_TEST(wrong_decks_are_answered_with_their_line) {
+TEST(wrong_decks_are_answered_with_their_line) {
   decks_enter();
   for (size_t i = 0; i < sizeof wrong_decks / sizeof *wrong_decks; ++i)
     check_wrong(wrong_decks[i].text, wrong_decks[i].first,
                 wrong_decks[i].totals);
   decks_leave();
 }
-END_TEST
 
-START_TEST(wrong_formats_are_refused) {
+TEST(wrong_formats_are_refused) {
   decks_enter();
   for (size_t i = 0; i < sizeof wrong_formats / sizeof *wrong_formats; ++i) {
-    char content[200], first[200];
-    snprintf(content, sizeof content, "*LEGACY, FORMAT=%s\n*A\n1\n",
-             wrong_formats[i][0]);
-    snprintf(first, sizeof first, "a.inp:1:17: error P1027: %s in '%s'",
-             wrong_formats[i][1], wrong_formats[i][0]);
+    PRINTED(content, "*LEGACY, FORMAT=%s\n*A\n1\n", wrong_formats[i][0]);
+    PRINTED(first, "a.inp:1:17: error P1027: %s in '%s'", wrong_formats[i][1],
+            wrong_formats[i][0]);
     check_wrong(content, first, "1 error");
   }
   decks_leave();
 }
-END_TEST
 
-START_TEST(all_errors_come_in_one_pass) {
+TEST(all_errors_come_in_one_pass) {
   decks_enter();
   read_deck r = decks_read_text(
       "*A, B=\n<N>\n*PARAMETER\nx y\n*LEGACY, FORMAT=(Z)\n*C\n\"a\n");
@@ -322,9 +315,8 @@ START_TEST(all_errors_come_in_one_pass) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(a_missing_deck_is_no_deck) {
+TEST(a_missing_deck_is_no_deck) {
   decks_enter();
   read_deck r = decks_read("none.inp", 0, NULL);
   ck_assert_int_eq(r.st, ERR_FILE);
@@ -339,9 +331,8 @@ START_TEST(a_missing_deck_is_no_deck) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(a_nul_byte_ends_the_file) {
+TEST(a_nul_byte_ends_the_file) {
   static const char bytes[] = "*A\n1,\0 2\n*B\n";
   decks_enter();
   decks_write_bytes("a.inp", bytes, sizeof bytes - 1);
@@ -354,9 +345,8 @@ START_TEST(a_nul_byte_ends_the_file) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(a_line_has_at_most_4096_characters) {
+TEST(a_line_has_at_most_4096_characters) {
   char content[10000];
   decks_enter();
   strcpy(content, "*A\n");
@@ -375,9 +365,8 @@ START_TEST(a_line_has_at_most_4096_characters) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(too_many_parameters_are_refused) {
+TEST(too_many_parameters_are_refused) {
   char content[2000] = "*A";
   decks_enter();
   for (int i = 0; i < 65; ++i)
@@ -390,11 +379,10 @@ START_TEST(too_many_parameters_are_refused) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
 /* ---- includes, definitions --------------------------------------------- */
 
-START_TEST(includes_are_relative_and_may_hold_data_lines) {
+TEST(includes_are_relative_and_may_hold_data_lines) {
   decks_enter();
   ck_assert_int_eq(mkdir("sub", 0777), 0);
   decks_write("sub/b.inp", "1,2\n*INCLUDE, INPUT=\"c d.inp\"\n5\n*B\n6\n");
@@ -420,9 +408,8 @@ START_TEST(includes_are_relative_and_may_hold_data_lines) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(a_circle_of_includes_is_found_with_its_chain) {
+TEST(a_circle_of_includes_is_found_with_its_chain) {
   decks_enter();
   ck_assert_int_eq(mkdir("sub", 0777), 0);
   decks_write("sub/b.inp", "*B\n*INCLUDE, INPUT=../sub/c.inp\n");
@@ -440,9 +427,8 @@ START_TEST(a_circle_of_includes_is_found_with_its_chain) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(includes_are_bounded_in_depth_and_number) {
+TEST(includes_are_bounded_in_depth_and_number) {
   char name[40], content[200];
   decks_enter();
   for (int i = 0; i < 20; ++i) {
@@ -470,9 +456,8 @@ START_TEST(includes_are_bounded_in_depth_and_number) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(the_command_line_wins) {
+TEST(the_command_line_wins) {
   static const char *const defines[] = {"h=0.025", "Q = 2*h", "Big=1.5 +03"};
   double value;
   decks_enter();
@@ -492,9 +477,8 @@ START_TEST(the_command_line_wins) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(wrong_definitions_of_the_command_line_are_refused) {
+TEST(wrong_definitions_of_the_command_line_are_refused) {
   static const struct {
     const char *define, *first;
   } cases[] = {
@@ -525,9 +509,8 @@ START_TEST(wrong_definitions_of_the_command_line_are_refused) {
   }
   decks_leave();
 }
-END_TEST
 
-START_TEST(thousands_of_names_are_found) {
+TEST(thousands_of_names_are_found) {
   size_t before = memory_in_use();
   decks_enter();
   FILE *f = fopen("a.inp", "w");
@@ -548,11 +531,10 @@ START_TEST(thousands_of_names_are_found) {
   ck_assert_uint_eq(memory_in_use(), before);
   decks_leave();
 }
-END_TEST
 
 /* ---- values ------------------------------------------------------------ */
 
-START_TEST(values_are_numbers_or_expressions) {
+TEST(values_are_numbers_or_expressions) {
   const double x[3] = {2, 3, 5};
   quantity q;
   double real;
@@ -578,9 +560,8 @@ START_TEST(values_are_numbers_or_expressions) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(wrong_values_are_reported_at_their_place) {
+TEST(wrong_values_are_reported_at_their_place) {
   static const char *const wanted[] = {
       "a.inp:2:1: error P1024: not a number: 'x'\n",
       "a.inp:2:4: error P1024: not a number: '1.5q' (letters after the number)",
@@ -617,9 +598,8 @@ START_TEST(wrong_values_are_reported_at_their_place) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-START_TEST(raw_lines_and_places_are_kept) {
+TEST(raw_lines_and_places_are_kept) {
   decks_enter();
   read_deck r =
       decks_read_good("*HEADING\n  A, title  \n*A, B=2\n 1, ** c\n  3\n");
@@ -638,17 +618,5 @@ START_TEST(raw_lines_and_places_are_kept) {
   decks_done(&r);
   decks_leave();
 }
-END_TEST
 
-UNIT_MAIN("deck", good_decks_have_their_cards,
-          wrong_decks_are_answered_with_their_line, wrong_formats_are_refused,
-          all_errors_come_in_one_pass, a_missing_deck_is_no_deck,
-          a_nul_byte_ends_the_file, a_line_has_at_most_4096_characters,
-          too_many_parameters_are_refused,
-          includes_are_relative_and_may_hold_data_lines,
-          a_circle_of_includes_is_found_with_its_chain,
-          includes_are_bounded_in_depth_and_number, the_command_line_wins,
-          wrong_definitions_of_the_command_line_are_refused,
-          thousands_of_names_are_found, values_are_numbers_or_expressions,
-          wrong_values_are_reported_at_their_place,
-          raw_lines_and_places_are_kept, )
+UNIT_MAIN("deck")

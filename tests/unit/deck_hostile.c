@@ -1,5 +1,4 @@
 /* src/deck on hostile input: mutated decks, refused memory, large decks. */
-#include "base/base.h"
 #include "support/decks.h"
 #include "support/points.h"
 #include "support/unit.h"
@@ -30,7 +29,7 @@ static void use_values(read_deck *r) {
     }
 }
 
-START_TEST(mutated_decks_do_no_harm) {
+TEST(mutated_decks_do_no_harm) {
   static const char alphabet[] = "*,\"<>=()NHx1.E+-^\n\r\t \0\xff";
   char content[2 * sizeof seed_deck];
   unsigned state = 2463534242u;
@@ -58,9 +57,8 @@ START_TEST(mutated_decks_do_no_harm) {
   ck_assert_uint_eq(memory_in_use(), before);
   decks_leave();
 }
-END_TEST
 
-START_TEST(a_refused_request_leaves_nothing_behind) {
+TEST(a_refused_request_leaves_nothing_behind) {
   static const char *const defines[] = {"Q=2"};
   size_t before = memory_in_use();
   decks_enter();
@@ -88,13 +86,12 @@ START_TEST(a_refused_request_leaves_nothing_behind) {
   memory_free(NULL);
   decks_leave();
 }
-END_TEST
 
 enum { BYTES_PER_BYTE = 120 };
 
 /* What is kept of a deck is at most a field (64 bytes) and its text for every
  * comma; a time that grew with the square would be seen as hours. */
-START_TEST(large_decks_take_time_and_room_in_proportion) {
+TEST(large_decks_take_time_and_room_in_proportion) {
   static const char *const lines[] = {
       "1,2,3,4,5,6,7,8,",    "<N>,<M>,<nope>",       "*A, B=1, B=2, C=<N>",
       "*PARAMETER\nA=1+1+1", "*LEGACY, FORMAT=(I5)", "\"x+\",\"1",
@@ -114,8 +111,5 @@ START_TEST(large_decks_take_time_and_room_in_proportion) {
   }
   decks_leave();
 }
-END_TEST
 
-UNIT_MAIN("deck_hostile", mutated_decks_do_no_harm,
-          a_refused_request_leaves_nothing_behind,
-          large_decks_take_time_and_room_in_proportion)
+UNIT_MAIN("deck_hostile")

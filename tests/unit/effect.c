@@ -1,6 +1,5 @@
 /* src/run/effect.c: which hooks of a table are called, in which order and with
  * what, by effects that write down their names. */
-#include "base/base.h"
 #include "run/run.h"
 #include "support/unit.h"
 
@@ -306,7 +305,9 @@ static void says(run *r, size_t k, const char *letters, status returns) {
 
 static model words = {.effects = 1u << 5};
 
-START_TEST(every_hook_is_called_in_order) {
+TEST(every_hook_is_called_in_order) {
+  OWNED char *all = memory_new(0, 1);
+  OWNS(all);
   run r = {.m = &words};
   failing = 0;
   ck_assert_int_eq(effects_create(&r, table), OK);
@@ -330,12 +331,11 @@ START_TEST(every_hook_is_called_in_order) {
     says(&r, k, is & MAKES ? "a" : "ab-d", OK);
   }
   ck_assert_int_eq(timer_cost(STAGE_BETWEEN).calls, 0);
-  effects_release(&r);
-  ck_assert_int_eq(r.effects.n, 0);
 }
-END_TEST
 
-START_TEST(copy_borrows_what_accepts_nothing) {
+TEST(copy_borrows_what_accepts_nothing) {
+  OWNED char *all = memory_new(0, 1);
+  OWNS(all);
   run r = {.m = &words}, other;
   failing = 0;
   ck_assert_int_eq(effects_create(&r, table), OK);
@@ -353,12 +353,11 @@ START_TEST(copy_borrows_what_accepts_nothing) {
                    effect_state(&r.effects, &a));
   ck_assert_int_eq(((own *)effect_state(&other.effects, &b))[1].letter, 'y');
   ck_assert_ptr_null(effect_state(&r.effects, &off));
-  effects_release(&other);
-  effects_release(&r);
 }
-END_TEST
 
-START_TEST(each_keeps_its_own_group) {
+TEST(each_keeps_its_own_group) {
+  OWNED char *all = memory_new(0, 1);
+  OWNS(all);
   run r = {.m = &words};
   archive *file;
   ck_assert_int_eq(archive_new(&file), OK);
@@ -369,22 +368,21 @@ START_TEST(each_keeps_its_own_group) {
   ck_assert_str_eq(said, " a.first/ b.second/ -.third/ d.fourth/");
   failing = 'b';
   ck_assert_int_eq(effects_keep(&r, file), ERR_DECK);
-  effects_release(&r);
   archive_free(&file);
 }
-END_TEST
 
 /* Memory was refused in its "create". */
-START_TEST(nothing_is_forgotten_that_was_not_made) {
+TEST(nothing_is_forgotten_that_was_not_made) {
   static const effect_ops row = {.on = ALL(.create = create_a)};
   run r = {.effects = {1, {{.ops = &row}}}};
   said[0] = '\0';
   effects_forget(&r);
   ck_assert_str_eq(said, "");
 }
-END_TEST
 
-START_TEST(rows_are_asked_for_what_they_say) {
+TEST(rows_are_asked_for_what_they_say) {
+  OWNED char *all = memory_new(0, 1);
+  OWNS(all);
   run r = {.m = &words};
   failing = 0;
   ck_assert_int_eq(effects_create(&r, table), OK);
@@ -392,17 +390,11 @@ START_TEST(rows_are_asked_for_what_they_say) {
   ck_assert_int_eq(effects_reach_far(&r), 1);
   ck_assert_int_eq(effects_strain(&r, 3), 1);
   ck_assert_int_eq(effects_strain(&r, 2), 0);
-  effects_release(&r);
   r = (run){.m = &words};
   ck_assert_int_eq(effects_create(&r, (const effect_ops *[]){&a, NULL}), OK);
   ck_assert_ptr_null(effects_sum_up(&r));
   ck_assert_int_eq(effects_reach_far(&r), 0);
   ck_assert_int_eq(effects_strain(&r, 3), 0);
-  effects_release(&r);
 }
-END_TEST
 
-UNIT_MAIN("effect", every_hook_is_called_in_order,
-          copy_borrows_what_accepts_nothing, each_keeps_its_own_group,
-          nothing_is_forgotten_that_was_not_made,
-          rows_are_asked_for_what_they_say)
+UNIT_MAIN("effect")

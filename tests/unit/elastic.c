@@ -1,7 +1,6 @@
 /* src/material/elastic.c against numbers derived by hand or by inversion. */
 #include "material/material.h"
 
-#include "base/base.h"
 #include "support/unit.h"
 
 static char why[200];
@@ -16,7 +15,7 @@ static void near(double a, double b) {
   ck_assert_double_eq_tol(a, b, 1e-12 * (1 + fabs(b)));
 }
 
-START_TEST(isotropic_matrix_has_lame_entries) {
+TEST(isotropic_matrix_has_lame_entries) {
   /* E = 260, nu = 0.3: lambda = 150, G = 100. */
   double C[36];
   ck_assert_ptr_null(matrix(ELASTIC_ISO, 2, (double[]){260, 0.3}, C));
@@ -26,10 +25,9 @@ START_TEST(isotropic_matrix_has_lame_entries) {
                          : i == j       ? 100
                                         : 0);
 }
-END_TEST
 
 /* Columns of the inverse must be the strains of unit stresses. */
-START_TEST(orthotropic_matrix_inverts_the_compliance) {
+TEST(orthotropic_matrix_inverts_the_compliance) {
   const double k[] = {200, 100, 50, 0.3, 0.2, 0.25, 40, 30, 20};
   const double E1 = 200, E2 = 100, E3 = 50;
   const double S[36] = {
@@ -48,9 +46,8 @@ START_TEST(orthotropic_matrix_inverts_the_compliance) {
       near(sum, i == j);
     }
 }
-END_TEST
 
-START_TEST(orthotropic_with_equal_moduli_is_isotropic) {
+TEST(orthotropic_with_equal_moduli_is_isotropic) {
   const double G = 260 / 2.6;
   double C[36], D[36];
   matrix(ELASTIC_ISO, 2, (double[]){260, 0.3}, C);
@@ -58,11 +55,10 @@ START_TEST(orthotropic_with_equal_moduli_is_isotropic) {
                             (double[]){260, 260, 260, .3, .3, .3, G, G, G}, D));
   for (int i = 0; i < 36; ++i) near(D[i], C[i]);
 }
-END_TEST
 
 /* D1111 = 101, D1122 = 102, ... numbered in Abaqus's order, made definite by
  * a large diagonal. */
-START_TEST(anisotropic_constants_stand_where_abaqus_puts_them) {
+TEST(anisotropic_constants_stand_where_abaqus_puts_them) {
   double k[21], C[36];
   static const char *const ours[] = {"11", "22", "33", "12", "23", "13"};
   static const char *const order[] = {
@@ -74,10 +70,9 @@ START_TEST(anisotropic_constants_stand_where_abaqus_puts_them) {
   ck_assert_ptr_null(matrix(ELASTIC_ANISO, 21, k, C));
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
-      char one[5], two[5];
       double expected = 0;
-      snprintf(one, sizeof one, "%s%s", ours[i], ours[j]);
-      snprintf(two, sizeof two, "%s%s", ours[j], ours[i]);
+      PRINTED(one, "%s%s", ours[i], ours[j]);
+      PRINTED(two, "%s%s", ours[j], ours[i]);
       for (int q = 0; q < 21; ++q)
         if (strcmp(order[q], one) == 0 || strcmp(order[q], two) == 0)
           expected = k[q];
@@ -85,7 +80,6 @@ START_TEST(anisotropic_constants_stand_where_abaqus_puts_them) {
       ck_assert_double_eq(C[i + 6 * j], expected);
     }
 }
-END_TEST
 
 static void refused(elastic_type type, int n, const double *c,
                     const char *part) {
@@ -95,7 +89,7 @@ static void refused(elastic_type type, int n, const double *c,
                 text == NULL ? "accepted" : text);
 }
 
-START_TEST(constants_that_are_not_elliptic_are_refused) {
+TEST(constants_that_are_not_elliptic_are_refused) {
   const double nan_ = nan("");
   refused(ELASTIC_ISO, 2, (double[]){0, 0.3}, "E = 0");
   refused(ELASTIC_ISO, 2, (double[]){-1, 0.3}, "E = -1");
@@ -129,9 +123,8 @@ START_TEST(constants_that_are_not_elliptic_are_refused) {
   k[0] = 1e20; /* D1111: each is compared with its own stiffness */
   ck_assert_ptr_null(matrix(ELASTIC_ANISO, 21, k, C));
 }
-END_TEST
 
-START_TEST(plane_strain_and_axisymmetry_keep_four_rows) {
+TEST(plane_strain_and_axisymmetry_keep_four_rows) {
   double C[36], E[16];
   matrix(ELASTIC_ISO, 2, (double[]){260, 0.3}, C);
   for (int kin = 0; kin < 2; ++kin) {
@@ -143,9 +136,8 @@ START_TEST(plane_strain_and_axisymmetry_keep_four_rows) {
                                           : 0);
   }
 }
-END_TEST
 
-START_TEST(plane_stress_has_the_closed_form_of_isotropy) {
+TEST(plane_stress_has_the_closed_form_of_isotropy) {
   /* E/(1 - nu^2) = 260/0.91, nu times it, G = 100. */
   double C[36], E[16];
   const double a = 260 / 0.91;
@@ -158,11 +150,10 @@ START_TEST(plane_stress_has_the_closed_form_of_isotropy) {
   elastic_zz_strain(C, e);
   near(e[2], -0.3 / 0.7 * 3); /* -nu/(1-nu) (exx + eyy) */
 }
-END_TEST
 
 /* With coupling of everything: sigma_zz = sigma_yz = sigma_zx = 0 by solving
  * the full matrix against the strains of the reduced one. */
-START_TEST(plane_stress_of_a_full_matrix_leaves_the_plane_free) {
+TEST(plane_stress_of_a_full_matrix_leaves_the_plane_free) {
   double k[21], C[36], E[16], e[4] = {0.3, -0.7, 0, 0.4};
   for (int q = 0; q < 21; ++q) k[q] = 1 + 0.3 * (q % 5);
   static const int diagonal[] = {0, 2, 5, 9, 14, 20};
@@ -191,9 +182,8 @@ START_TEST(plane_stress_of_a_full_matrix_leaves_the_plane_free) {
     ck_assert_double_eq_tol(s, reduced, 1e-12);
   }
 }
-END_TEST
 
-START_TEST(power_of_two_scales_every_entry_exactly) {
+TEST(power_of_two_scales_every_entry_exactly) {
   const double k[] = {207, 101, 53, 0.31, 0.21, 0.27, 41, 31, 23};
   double scaled[9], C[36], D[36], E[16], G[16];
   for (int i = 0; i < 9; ++i)
@@ -205,14 +195,5 @@ START_TEST(power_of_two_scales_every_entry_exactly) {
   elastic_reduce(D, PLANE_STRESS, G);
   for (int i = 0; i < 16; ++i) ck_assert(G[i] == ldexp(E[i], 41));
 }
-END_TEST
 
-UNIT_MAIN("elastic", isotropic_matrix_has_lame_entries,
-          orthotropic_matrix_inverts_the_compliance,
-          orthotropic_with_equal_moduli_is_isotropic,
-          anisotropic_constants_stand_where_abaqus_puts_them,
-          constants_that_are_not_elliptic_are_refused,
-          plane_strain_and_axisymmetry_keep_four_rows,
-          plane_stress_has_the_closed_form_of_isotropy,
-          plane_stress_of_a_full_matrix_leaves_the_plane_free,
-          power_of_two_scales_every_entry_exactly)
+UNIT_MAIN("elastic")

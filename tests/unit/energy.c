@@ -7,11 +7,8 @@
  *   - work = change of the strain energy + lost + change of what is stored, to
  *     the order of the integrator
  */
-#include "base/base.h"
 #include "support/point_body.h"
 #include "support/unit.h"
-
-#include <math.h>
 
 /* Beyond all thresholds of the examples; past t = 0, as for the hardening. */
 static const double STRAIN = 2e-3, START = 1.0, YOUNG = 1e5;
@@ -91,7 +88,7 @@ static void check_order(const scheme *s, const law_ops *law, int words) {
   ck_assert_msg(fabs(fine) < 0.05, "%s, %s: %g", law->name, s->name, fine);
 }
 
-START_TEST(energy_is_lost_and_balanced_to_the_order) {
+TEST(energy_is_lost_and_balanced_to_the_order) {
   int n = 0;
   for (int l = 0; law_list[l] != NULL; ++l)
     for (int words = 0; has_words(law_list[l], words); ++words)
@@ -102,6 +99,5 @@ START_TEST(energy_is_lost_and_balanced_to_the_order) {
       }
   ck_assert_int_ge(n, 11 * 6);
 }
-END_TEST
 
-UNIT_MAIN("energy", energy_is_lost_and_balanced_to_the_order)
+UNIT_MAIN("energy")

@@ -1,5 +1,4 @@
 /* src/exchange: problems of every storage, files of every defect. */
-#include "base/base.h"
 #include "exchange/exchange.h"
 #include "support/contact_case.h"
 #include "support/decks.h"
@@ -27,7 +26,7 @@ typedef struct answer {
 
 static answer read_as(exchange_type type) {
   answer a = {0};
-  message_log *log = NULL;
+  OWNED message_log *log = NULL;
   const place at = {.file = "a.inp", .line_no = 1};
   ck_assert_int_eq(message_log_new(&log), OK);
   a.st = exchange_read(path, type, &at, log, &a.p);
@@ -35,7 +34,6 @@ static answer read_as(exchange_type type) {
   if (a.st != OK) snprintf(a.text, sizeof a.text, "%s", status_message());
   if (a.st == ERR_DECK || a.st == ERR_FILE)
     ck_assert_int_eq(message_count(log, ERROR), 1);
-  memory_free(log);
   return a;
 }
 
@@ -46,7 +44,7 @@ static void random_matrix(int n, double *a, unsigned long long *seed) {
 /* a = b b' + d I, n columns of b. */
 static void random_spd(int m, int n, double d, double *a,
                        unsigned long long *seed) {
-  double *b = calloc((size_t)(m * n), sizeof *b);
+  FREED double *b = calloc((size_t)(m * n), sizeof *b);
   random_matrix(m * n, b, seed);
   for (int i = 0; i < m; ++i)
     for (int j = 0; j < m; ++j) {
@@ -54,7 +52,6 @@ static void random_spd(int m, int n, double d, double *a,
       for (int k = 0; k < n; ++k) sum += b[i + m * k] * b[j + m * k];
       a[i + m * j] = sum;
     }
-  free(b);
 }
 
 /* The problem read, against W and q of FCLIB: normal signs turned. */
@@ -62,7 +59,7 @@ static void check_local(const exchange_problem *p, int dim, int n,
                         const double *W, const double *q, const double *mu,
                         double tol) {
   int m = dim * n;
-  double *have = calloc((size_t)(m * m), sizeof *have);
+  FREED double *have = calloc((size_t)(m * m), sizeof *have);
   contact_dense(&p->cp, have);
   ck_assert_int_eq(p->dim, dim);
   ck_assert_int_eq(p->n, n);
@@ -75,7 +72,6 @@ static void check_local(const exchange_problem *p, int dim, int n,
       ck_assert_double_eq_tol(have[i + m * j], t * W[i + m * j], tol);
     }
   }
-  free(have);
   for (int i = 0; i < n; ++i) {
     ck_assert_double_eq(p->cp.B->val[i], mu[i]);
     ck_assert_double_eq(p->cp.gap[i], 0.0);
@@ -96,7 +92,7 @@ static void few_blocks(int dim, double *W, unsigned long long *seed) {
     }
 }
 
-START_TEST(compliance_of_few_blocks_is_kept_in_them) {
+TEST(compliance_of_few_blocks_is_kept_in_them) {
   enter();
   for (int dim = 2; dim <= 3; ++dim) {
     unsigned long long seed = 5;
@@ -116,10 +112,9 @@ START_TEST(compliance_of_few_blocks_is_kept_in_them) {
   }
   leave();
 }
-END_TEST
 
 /* An unsymmetric matrix with zeros, so that rows and columns are told apart. */
-START_TEST(every_storage_gives_the_same_problem) {
+TEST(every_storage_gives_the_same_problem) {
   enter();
   for (int dim = 2; dim <= 3; ++dim)
     for (int k = 0; k < 3; ++k) {
@@ -136,14 +131,13 @@ START_TEST(every_storage_gives_the_same_problem) {
     }
   leave();
 }
-END_TEST
 
 /* b = H' inv(M) [H f], by elimination without pivots; M is SPD. */
 static void condense_dense(int n, int m, const double *M_in, const double *H,
                            const double *f, double *W, double *q) {
   int c = m + 1;
-  double *M = malloc(sizeof *M * (size_t)(n * n));
-  double *B = malloc(sizeof *B * (size_t)(n * c));
+  FREED double *M = malloc(sizeof *M * (size_t)(n * n));
+  FREED double *B = malloc(sizeof *B * (size_t)(n * c));
   memcpy(M, M_in, sizeof *M * (size_t)(n * n));
   memcpy(B, H, sizeof *B * (size_t)(n * m));
   memcpy(B + n * m, f, sizeof *B * (size_t)n);
@@ -164,8 +158,6 @@ static void condense_dense(int n, int m, const double *M_in, const double *H,
       else
         q[i] += sum;
     }
-  free(M);
-  free(B);
 }
 
 enum { NV = 40, NC = 3 };
@@ -206,8 +198,8 @@ static void keep_triangle(double *M, int keep) {
       if (keep * (j - i) < 0) M[i + NV * j] = 0.0;
 }
 
-START_TEST(global_problem_is_its_local_condensation) {
-  global_case *g = malloc(sizeof *g);
+TEST(global_problem_is_its_local_condensation) {
+  FREED global_case *g = malloc(sizeof *g);
   enter();
   for (int dim = 2; dim <= 3; ++dim)
     for (int k = 0; k < 3; ++k)
@@ -222,14 +214,12 @@ START_TEST(global_problem_is_its_local_condensation) {
         memory_free(a.p);
       }
   leave();
-  free(g);
 }
-END_TEST
 
 /* Not symmetric, or with a negative mass, of one triangle or all: regular, by
  * elimination. */
-START_TEST(unsymmetric_mass_is_eliminated_too) {
-  global_case *g = malloc(sizeof *g);
+TEST(unsymmetric_mass_is_eliminated_too) {
+  FREED global_case *g = malloc(sizeof *g);
   enter();
   for (int k = 0; k < 4; ++k) {
     global_make(g, 2);
@@ -246,9 +236,7 @@ START_TEST(unsymmetric_mass_is_eliminated_too) {
     memory_free(a.p);
   }
   leave();
-  free(g);
 }
-END_TEST
 
 /* Unknown 5 has no mass, nor a row of H if it is not touched. */
 static void make_massless(global_case *g, int touched) {
@@ -265,8 +253,8 @@ static void make_dependent(global_case *g) {
   for (int k = 0; k < 3 * NC; ++k) g->H[7 + NV * k] = g->H[5 + NV * k];
 }
 
-START_TEST(singular_mass_that_contact_does_not_hold_is_refused) {
-  global_case *g = malloc(sizeof *g);
+TEST(singular_mass_that_contact_does_not_hold_is_refused) {
+  FREED global_case *g = malloc(sizeof *g);
   enter();
   for (int k = 0; k < 2; ++k) {
     k == 0 ? make_massless(g, 0) : make_dependent(g);
@@ -276,9 +264,7 @@ START_TEST(singular_mass_that_contact_does_not_hold_is_refused) {
     ck_assert_ptr_nonnull(strstr(a.text, "/fclib_global/M"));
   }
   leave();
-  free(g);
 }
-END_TEST
 
 /* C = A B, all [m*m] column major. */
 static void multiply(int m, const double *A, const double *B, double *C) {
@@ -325,8 +311,8 @@ static void check_massless(const exchange_problem *p, const double *W0,
   ck_assert_double_eq_tol(along, f, 1e-8 * fabs(f));
 }
 
-START_TEST(singular_mass_that_contact_holds_is_a_stiffness) {
-  global_case *g = malloc(sizeof *g);
+TEST(singular_mass_that_contact_holds_is_a_stiffness) {
+  FREED global_case *g = malloc(sizeof *g);
   double h[MASSLESS], f, W0[MASSLESS * MASSLESS], q0[MASSLESS] = {0.0};
   enter();
   for (int keep = -1; keep <= 1; ++keep) {
@@ -350,13 +336,11 @@ START_TEST(singular_mass_that_contact_holds_is_a_stiffness) {
     memory_free(a.p);
   }
   leave();
-  free(g);
 }
-END_TEST
 
 /* The last entry of H comes in two halves: A = inv(H) M inv(H), M whole or a
  * triangle; H with an entry more is no diagonal: W = H' inv(M) H. */
-START_TEST(entries_of_a_diagonal_given_twice_are_added) {
+TEST(entries_of_a_diagonal_given_twice_are_added) {
   const double f[] = {6.0, 20.0}, w[] = {0.25, 0.5}, mu[] = {0.3};
   enter();
   for (int k = 0; k < 4; ++k) {
@@ -379,9 +363,8 @@ START_TEST(entries_of_a_diagonal_given_twice_are_added) {
   }
   leave();
 }
-END_TEST
 
-START_TEST(no_contact_is_a_problem) {
+TEST(no_contact_is_a_problem) {
   const double M[] = {2.0, 0.0, 0.0, 1.0}, f[] = {1.0, 1.0};
   const fclib_global_data g = {.dim = 2, .n_v = 2, .M = M, .f = f};
   enter();
@@ -397,7 +380,6 @@ START_TEST(no_contact_is_a_problem) {
   }
   leave();
 }
-END_TEST
 
 /* ---- defects ---- */
 
@@ -457,16 +439,15 @@ static const struct defect {
                {"vectors/mu", 1, 2, -0.1},
                {"vectors", 0, -1, 0}};
 
-START_TEST(defect_names_file_and_dataset) {
+TEST(defect_names_file_and_dataset) {
   unsigned long long seed = 5;
   double W[16], q[4] = {1, 2, 3, 4}, mu[2] = {0.1, 0.2};
   random_matrix(16, W, &seed);
   enter();
   for (size_t k = 0; k < sizeof defects / sizeof *defects; ++k) {
     const struct defect *d = &defects[k];
-    char name[80];
     fclib_local(path, STORE_ROWS, 2, 2, W, q, mu);
-    snprintf(name, sizeof name, "/fclib_local/%s", d->name);
+    PRINTED(name, "/fclib_local/%s", d->name);
     replace(name, d->real, d->n, d->value);
     answer a = read_as(EXCHANGE_FCLIB);
     ck_assert_msg(a.st == ERR_DECK, "%s, row %zu: %d", d->name, k, a.st);
@@ -478,9 +459,8 @@ START_TEST(defect_names_file_and_dataset) {
   }
   leave();
 }
-END_TEST
 
-START_TEST(what_is_not_available_is_said) {
+TEST(what_is_not_available_is_said) {
   static const char *const names[] = {"/fclib_local_rolling/spacedim",
                                       "/fclib_global_rolling/spacedim"};
   double W[4] = {1, 0, 0, 1}, q[2] = {1, 1}, mu[1] = {0.3};
@@ -504,7 +484,6 @@ START_TEST(what_is_not_available_is_said) {
   }
   leave();
 }
-END_TEST
 
 /* ---- equality constraints ---- */
 
@@ -530,7 +509,7 @@ static void check_links(const exchange_problem *p, int m, const double *W,
 }
 
 /* s from r and l. twice: the last constraint repeats the first. */
-START_TEST(local_constraints_are_eliminated) {
+TEST(local_constraints_are_eliminated) {
   enter();
   for (int dim = 2; dim <= 3; ++dim)
     for (int twice = 0; twice <= 1; ++twice) {
@@ -576,12 +555,11 @@ START_TEST(local_constraints_are_eliminated) {
     }
   leave();
 }
-END_TEST
 
 /* v, r and l are planted: M v = H r + G l + f, G'v + b = 0, u = H'v + w. In
  * the second round one unknown has no mass: the constraints hold it. */
-START_TEST(global_constraints_are_eliminated) {
-  global_case *g = malloc(sizeof *g);
+TEST(global_constraints_are_eliminated) {
+  FREED global_case *g = malloc(sizeof *g);
   enter();
   for (int k = 0; k < 4; ++k) {
     unsigned long long seed = 23;
@@ -621,9 +599,7 @@ START_TEST(global_constraints_are_eliminated) {
     memory_free(a.p);
   }
   leave();
-  free(g);
 }
-END_TEST
 
 /* Bytes of the problem file, as they stand. */
 static char *bytes_of_file(size_t *size) {
@@ -637,28 +613,26 @@ static void write_bytes(const char *bytes, size_t n) {
   fclose(f);
 }
 
-START_TEST(file_cut_short_is_refused) {
+TEST(file_cut_short_is_refused) {
   double W[4] = {1, 0, 0, 1}, q[2] = {1, 1}, mu[1] = {0.3};
   size_t size = 0;
   enter();
   fclib_local(path, STORE_ROWS, 2, 1, W, q, mu);
-  char *bytes = bytes_of_file(&size);
+  FREED char *bytes = bytes_of_file(&size);
   for (size_t n = 0; n < size; n += 97) {
     write_bytes(bytes, n);
     answer a = read_as(EXCHANGE_FCLIB);
     ck_assert_msg(a.st == ERR_FILE, "%zu of %zu bytes: %d", n, size, a.st);
     ck_assert_ptr_nonnull(strstr(a.text, "problem.h5"));
   }
-  free(bytes);
   unlink(path);
   answer a = read_as(EXCHANGE_BY_CONTENT);
   ck_assert_int_eq(a.st, ERR_FILE);
   leave();
 }
-END_TEST
 
 /* A gigabyte of numbers that nobody wrote: zeros as far as HDF5 is asked. */
-START_TEST(numbers_that_are_not_in_the_file_are_refused) {
+TEST(numbers_that_are_not_in_the_file_are_refused) {
   double W[4] = {1, 0, 0, 1}, q[2] = {1, 1}, mu[1] = {0.3};
   const hsize_t n[1] = {(hsize_t)1 << 27};
   enter();
@@ -680,7 +654,6 @@ START_TEST(numbers_that_are_not_in_the_file_are_refused) {
   ck_assert_uint_lt(memory_allocated() - before, 1 << 20);
   leave();
 }
-END_TEST
 
 /* ---- text ---- */
 
@@ -689,7 +662,7 @@ static answer read_text(const char *text) {
   return read_as(EXCHANGE_BY_CONTENT);
 }
 
-START_TEST(text_is_read_by_rows) {
+TEST(text_is_read_by_rows) {
   enter();
   answer a =
       read_text("\xEF\xBB\xBF# two unknowns\r\n2\n1, 2.5D0;-3 4e0 # M\n 5\n6");
@@ -705,9 +678,8 @@ START_TEST(text_is_read_by_rows) {
   memory_free(a.p);
   leave();
 }
-END_TEST
 
-START_TEST(defect_of_text_is_named) {
+TEST(defect_of_text_is_named) {
   static const char *const wrong[][2] = {{"", "number of unknowns"},
                                          {"x\n", "number of unknowns"},
                                          {"-1\n", "number of unknowns"},
@@ -731,34 +703,21 @@ START_TEST(defect_of_text_is_named) {
   }
   leave();
 }
-END_TEST
 
 /* ---- memory ---- */
 
 static void refuse_all(void) {
   const place at = {.file = "a.inp", .line_no = 1};
-  message_log *log = NULL;
+  OWNED message_log *log = NULL;
   ck_assert_int_eq(message_log_new(&log), OK);
-  for (long k = 1;; ++k) {
-    exchange_problem *p = NULL;
-    size_t before = memory_in_use();
-    memory_refuse(k, 0);
-    status st = exchange_read(path, EXCHANGE_BY_CONTENT, &at, log, &p);
-    memory_refuse(0, 0);
-    memory_free(p);
-    ck_assert_uint_eq(memory_in_use(), before);
-    if (st == OK) {
-      ck_assert_int_gt(k, 3);
-      break;
-    }
-    ck_assert_int_eq(st, ERR_MEMORY);
-    ck_assert_ptr_null(p);
-  }
-  memory_free(log);
+  exchange_problem *p;
+  UNIT_REFUSED(3, exchange_read(path, EXCHANGE_BY_CONTENT, &at, log, &p),
+               ck_assert((p == NULL) == refused);
+               memory_free(p));
 }
 
-START_TEST(every_refused_request_is_reported) {
-  global_case *g = malloc(sizeof *g);
+TEST(every_refused_request_is_reported) {
+  FREED global_case *g = malloc(sizeof *g);
   enter();
   global_make(g, 2);
   fclib_local(path, STORE_TRIPLET, 2, NC, g->W, g->q, g->mu);
@@ -771,19 +730,6 @@ START_TEST(every_refused_request_is_reported) {
   write_bytes("2 1 2 3 4 5 6", 13);
   refuse_all();
   leave();
-  free(g);
 }
-END_TEST
 
-UNIT_MAIN("exchange", every_storage_gives_the_same_problem,
-          compliance_of_few_blocks_is_kept_in_them,
-          global_problem_is_its_local_condensation,
-          unsymmetric_mass_is_eliminated_too,
-          singular_mass_that_contact_does_not_hold_is_refused,
-          singular_mass_that_contact_holds_is_a_stiffness,
-          entries_of_a_diagonal_given_twice_are_added, no_contact_is_a_problem,
-          defect_names_file_and_dataset, what_is_not_available_is_said,
-          local_constraints_are_eliminated, global_constraints_are_eliminated,
-          file_cut_short_is_refused,
-          numbers_that_are_not_in_the_file_are_refused, text_is_read_by_rows,
-          defect_of_text_is_named, every_refused_request_is_reported)
+UNIT_MAIN("exchange")

@@ -1,5 +1,4 @@
 /* src/deck/expression.c against the same formulas written in C. */
-#include "base/base.h"
 #include "deck/expression.h"
 #include "support/unit.h"
 
@@ -24,7 +23,7 @@ static double value_of(const char *text) {
 
 #define PI 3.14159265358979323846
 
-START_TEST(values_agree_with_c) {
+TEST(values_agree_with_c) {
   const struct {
     const char *text;
     double value;
@@ -113,9 +112,8 @@ START_TEST(values_agree_with_c) {
                   "%s: %.17g, not %.17g", cases[i].text, v, cases[i].value);
   }
 }
-END_TEST
 
-START_TEST(what_is_not_defined_is_not_hidden) {
+TEST(what_is_not_defined_is_not_hidden) {
   ck_assert(isnan(value_of("log(y)")));
   ck_assert(isinf(value_of("1/(x-x)")));
   ck_assert(isnan(value_of("max(1,sqrt(y))")));
@@ -124,9 +122,8 @@ START_TEST(what_is_not_defined_is_not_hidden) {
   ck_assert(isnan(value_of("step(sqrt(y))")));
   ck_assert(isnan(value_of("sign(sqrt(y))")));
 }
-END_TEST
 
-START_TEST(wrong_texts_are_refused_where_they_are_wrong) {
+TEST(wrong_texts_are_refused_where_they_are_wrong) {
   static const struct {
     const char *text, *why;
     int column;
@@ -187,24 +184,21 @@ START_TEST(wrong_texts_are_refused_where_they_are_wrong) {
                   column);
   }
 }
-END_TEST
 
-START_TEST(variables_are_those_that_occur) {
+TEST(variables_are_those_that_occur) {
   static const struct {
     const char *text;
     unsigned bits;
   } cases[] = {{"1", 0}, {"x", 1},      {"Y", 2},        {"z", 4},
                {"t", 8}, {"x*t+z", 13}, {"exp(1)+h", 0}, {"if(1,2,y)", 2}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-    expression *e;
+    OWNED expression *e = NULL;
     int column;
     ck_assert_int_eq(
         expression_compile(cases[i].text, symbol, NULL, &e, &column), OK);
     ck_assert_uint_eq(expression_variables(e), cases[i].bits);
-    memory_free(e);
   }
 }
-END_TEST
 
 /* n times "open", then 1, then n times "close". */
 static status compile_nested(const char *open, const char *close, int n) {
@@ -224,7 +218,7 @@ static status compile_nested(const char *open, const char *close, int n) {
   return st;
 }
 
-START_TEST(nesting_is_bounded) {
+TEST(nesting_is_bounded) {
   static const char *const pairs[][2] = {
       {"(", ")"},   {"sin(", ")"},   {"-", ""},        {"2^", ""},
       {"x+(", ")"}, {"max(x,", ")"}, {"if(x,y,", ")"}, {"x^", ""}};
@@ -235,10 +229,9 @@ START_TEST(nesting_is_bounded) {
     ck_assert_str_eq(status_message(), "nested too deeply");
   }
 }
-END_TEST
 
 /* The value stack holds 64: x^(x^(...^1)) needs one more for each level. */
-START_TEST(values_on_the_stack_are_bounded) {
+TEST(values_on_the_stack_are_bounded) {
   for (int n = 1; n < 300; ++n)
     ck_assert_int_eq(compile_nested("x^", "", n), n < 64 ? OK : ERR_DECK);
   for (int n = 1; n < 300; ++n)
@@ -249,36 +242,21 @@ START_TEST(values_on_the_stack_are_bounded) {
     ck_assert_int_eq(compile_nested("if(-x*x,y,", ")", n),
                      2 * n < 64 ? OK : ERR_DECK);
 }
-END_TEST
 
-START_TEST(long_flat_expressions_are_no_matter) {
+TEST(long_flat_expressions_are_no_matter) {
   ck_assert_int_eq(compile_nested("1+", "", 100000), OK);
   ck_assert_int_eq(compile_nested("x*2-", "", 100000), OK);
   ck_assert_int_eq(compile_nested("", "+max(1,2,3,4)", 10000), OK);
 }
-END_TEST
 
-START_TEST(a_refused_request_leaves_nothing_behind) {
-  size_t before = memory_in_use();
-  for (long k = 1, refused = 1; refused; ++k) {
-    expression *e;
-    int column;
-    long start = memory_requests();
-    memory_refuse(k, 0);
-    status st = expression_compile("max(x,1.5,t*2)+sin(y)^2-if(x<y,x,y*z+1)",
-                                   NULL, NULL, &e, &column);
-    refused = k <= memory_requests() - start;
-    memory_refuse(0, 0);
-    ck_assert_int_eq(st, refused ? ERR_MEMORY : OK);
-    memory_free(e);
-    ck_assert_uint_eq(memory_in_use(), before);
-  }
+TEST(a_refused_request_leaves_nothing_behind) {
+  expression *e;
+  int column;
+  UNIT_REFUSED(1,
+               expression_compile("max(x,1.5,t*2)+sin(y)^2-if(x<y,x,y*z+1)",
+                                  NULL, NULL, &e, &column),
+               memory_free(e));
   memory_free(NULL);
 }
-END_TEST
 
-UNIT_MAIN("expression", values_agree_with_c, what_is_not_defined_is_not_hidden,
-          wrong_texts_are_refused_where_they_are_wrong,
-          variables_are_those_that_occur, nesting_is_bounded,
-          values_on_the_stack_are_bounded, long_flat_expressions_are_no_matter,
-          a_refused_request_leaves_nothing_behind)
+UNIT_MAIN("expression")

@@ -1,6 +1,5 @@
 /* src/output/fclib.c: what stands in the file, what is refused; of files read,
  * the shapes. */
-#include "base/base.h"
 #include "exchange/exchange.h"
 #include "output/writers.h"
 #include "support/contact_case.h"
@@ -37,12 +36,11 @@ static contact_case one_node(void) {
 
 static void expect(const char *name, int n, const double *value) {
   int items;
-  double *x = fclib_take(path, name, &items);
+  FREED double *x = fclib_take(path, name, &items);
   ck_assert_msg(x != NULL, "%s is missing", name);
   ck_assert_int_eq(items, n);
   for (int k = 0; k < n; ++k)
     ck_assert_msg(fabs(x[k] - value[k]) <= 1e-15, "%s[%d] = %g", name, k, x[k]);
-  free(x);
 }
 
 #define EXPECT(name, ...)                                             \
@@ -62,9 +60,9 @@ static void expect_text(const char *name, const char *text) {
 }
 
 /* u_n = W_n (8 + r_n): gap left 0.5 - 2 = -1.5 without force. */
-START_TEST(signs_are_those_of_the_layout) {
+TEST(signs_are_those_of_the_layout) {
   enter();
-  contact_case c = one_node();
+  CONTACT_CASE c = one_node();
   const size_t number = 17;
   ck_assert_int_eq(
       fclib_write(&c.cp, &number, c.u, c.r, "title", "about", path), OK);
@@ -81,15 +79,13 @@ START_TEST(signs_are_those_of_the_layout) {
   EXPECT("/solution/r", 6, -1.5);
   expect_text("/fclib_local/info/title", "title");
   expect_text("/fclib_local/info/description", "about");
-  case_free(&c);
   leave();
 }
-END_TEST
 
 /* Nothing but contact holds the normal direction: no inverse. */
-START_TEST(singular_stiffness_is_written_as_global) {
+TEST(singular_stiffness_is_written_as_global) {
   enter();
-  contact_case c = one_node();
+  CONTACT_CASE c = one_node();
   c.A[0] = 0.0;
   c.cp.floating = 1;
   ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, NULL, "", "", path), OK);
@@ -101,8 +97,8 @@ START_TEST(singular_stiffness_is_written_as_global) {
   EXPECT("/fclib_global/vectors/w", 0.5, -0.25);
   int n;
   ck_assert_ptr_null(fclib_take(path, "/solution/u", &n));
-  message_log *log;
-  exchange_problem *p;
+  OWNED message_log *log = NULL;
+  OWNED exchange_problem *p = NULL;
   const place at = {.file = "a.inp", .line_no = 1};
   ck_assert_int_eq(message_log_new(&log), OK);
   ck_assert_int_eq(exchange_read(path, EXCHANGE_FCLIB, &at, log, &p), OK);
@@ -111,19 +107,15 @@ START_TEST(singular_stiffness_is_written_as_global) {
   ck_assert_mem_eq(p->cp.f, c.f, 2 * sizeof *c.f);
   ck_assert_double_eq(p->cp.gap[0], 0.5);
   ck_assert_double_eq(p->cp.ut0[0], 0.25);
-  memory_free(p);
-  memory_free(log);
-  case_free(&c);
   leave();
 }
-END_TEST
 
 /* As other programs leave room for what is theirs before HDF5. */
-START_TEST(layout_behind_a_user_block_is_read) {
+TEST(layout_behind_a_user_block_is_read) {
   const place at = {.file = "a.inp", .line_no = 1};
   enter();
-  contact_case c = one_node();
-  message_log *log;
+  CONTACT_CASE c = one_node();
+  OWNED message_log *log = NULL;
   exchange_problem *p;
   ck_assert_int_eq(message_log_new(&log), OK);
   for (hsize_t size = 512; size <= 2048; size *= 2) {
@@ -145,11 +137,8 @@ START_TEST(layout_behind_a_user_block_is_read) {
     ck_assert_double_eq_tol(p->cp.f[1], 1.25, 1e-15);
     memory_free(p);
   }
-  memory_free(log);
-  case_free(&c);
   leave();
 }
-END_TEST
 
 /* A matrix of ones in the place of one of a problem with one contact in the
  * plane; of the local one also R of one row, where "row" is set; no group: an
@@ -167,11 +156,11 @@ static const struct misfit {
                {"/fclib_global/G", 3, 1, 0, "G has 3 rows, M has 2"},
                {NULL, 0, 0, 0, "neither a group"}};
 
-START_TEST(matrices_that_do_not_fit_are_refused) {
+TEST(matrices_that_do_not_fit_are_refused) {
   const place at = {.file = "a.inp", .line_no = 1};
   const double one[] = {1, 1, 1, 1, 1, 1}, mu[] = {0.3};
   const fclib_global_data g = {2, 1, 2, one, one, one, one, mu};
-  message_log *log;
+  OWNED message_log *log = NULL;
   enter();
   ck_assert_int_eq(message_log_new(&log), OK);
   for (size_t k = 0; k < sizeof misfits / sizeof *misfits; ++k) {
@@ -195,16 +184,14 @@ START_TEST(matrices_that_do_not_fit_are_refused) {
     ck_assert_msg(strstr(status_message(), x->text) != NULL, "%s: %s", x->text,
                   status_message());
   }
-  memory_free(log);
   leave();
 }
-END_TEST
 
 /* No file is left, not even the one aside. */
-START_TEST(problems_without_a_place_are_refused) {
+TEST(problems_without_a_place_are_refused) {
   enter();
   for (int k = 0; k < 3; ++k) {
-    contact_case c = case_new(2, 2, 0.3);
+    CONTACT_CASE c = case_new(2, 2, 0.3);
     for (int i = 0; i < 4; ++i) c.A[5 * i] = 1.0;
     if (k == 0) c.g0[1] = 1.0;
     if (k == 1) c.B->col[0] = 1;
@@ -214,44 +201,23 @@ START_TEST(problems_without_a_place_are_refused) {
                      ERR_DECK);
     ck_assert_ptr_nonnull(strstr(status_message(), "CONDENSED=FCLIB"));
     ck_assert_ptr_null(folder_file(folder, "out.h5.tmp", &(size_t){0}));
-    case_free(&c);
   }
-  contact_case c = one_node();
+  CONTACT_CASE c = one_node();
   ck_assert_int_eq(
       fclib_write(&c.cp, NULL, NULL, NULL, "", "", "/nowhere/at/all.h5"),
       ERR_FILE);
   ck_assert_ptr_nonnull(strstr(status_message(), "/nowhere/at/all.h5"));
-  case_free(&c);
   leave();
 }
-END_TEST
 
-START_TEST(every_refused_request_is_reported) {
+TEST(every_refused_request_is_reported) {
   enter();
   for (int floating = 0; floating <= 1; ++floating) {
-    contact_case c = one_node();
+    CONTACT_CASE c = one_node();
     c.cp.floating = floating;
-    for (long k = 1;; ++k) {
-      size_t before = memory_in_use();
-      memory_refuse(k, 0);
-      status st = fclib_write(&c.cp, NULL, c.u, c.r, "", "", path);
-      memory_refuse(0, 0);
-      ck_assert_uint_eq(memory_in_use(), before);
-      if (st == OK) {
-        ck_assert_int_gt(k, 4);
-        break;
-      }
-      ck_assert_int_eq(st, ERR_MEMORY);
-    }
-    case_free(&c);
+    UNIT_REFUSED(4, fclib_write(&c.cp, NULL, c.u, c.r, "", "", path), );
   }
   leave();
 }
-END_TEST
 
-UNIT_MAIN("fclib", signs_are_those_of_the_layout,
-          singular_stiffness_is_written_as_global,
-          layout_behind_a_user_block_is_read,
-          matrices_that_do_not_fit_are_refused,
-          problems_without_a_place_are_refused,
-          every_refused_request_is_reported)
+UNIT_MAIN("fclib")

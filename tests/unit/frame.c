@@ -1,5 +1,4 @@
 /* src/contact/frame.c: orthonormal and oblique frames, fixed directions. */
-#include "base/base.h"
 #include "contact/parts.h"
 #include "support/unit.h"
 
@@ -23,7 +22,7 @@ static double volume(const double *m) {
          m[2] * (m[3] * m[7] - m[4] * m[6]);
 }
 
-START_TEST(one_normal_gives_a_right_handed_orthonormal_frame) {
+TEST(one_normal_gives_a_right_handed_orthonormal_frame) {
   unsigned char held[3];
   for (int k = 0; k < 400; ++k) {
     double polar = 0.05 * k, around = 0.37 * k, frame[9], basis[9];
@@ -37,18 +36,16 @@ START_TEST(one_normal_gives_a_right_handed_orthonormal_frame) {
     ck_assert_int_eq(held[0] + held[1] + held[2], 0);
   }
 }
-END_TEST
 
-START_TEST(tangent_of_the_plane_is_the_normal_turned_left) {
+TEST(tangent_of_the_plane_is_the_normal_turned_left) {
   double frame[4] = {0, -1};
   unsigned char held[2];
   ck_assert_int_eq(frame_complete(2, 1, 0, frame, held), 0);
   ck_assert_double_eq(frame[2], 1);
   ck_assert_double_eq(frame[3], 0);
 }
-END_TEST
 
-START_TEST(fixed_components_leave_the_normal_and_become_tangents) {
+TEST(fixed_components_leave_the_normal_and_become_tangents) {
   for (unsigned fixed = 1; fixed < 7; ++fixed) {
     double frame[9] = {0.48, -0.6, 0.64};
     unsigned char held[3];
@@ -66,9 +63,8 @@ START_TEST(fixed_components_leave_the_normal_and_become_tangents) {
     ck_assert_double_eq_tol(volume(frame), 1, 1e-13);
   }
 }
-END_TEST
 
-START_TEST(what_is_left_of_a_fixed_normal_is_measured) {
+TEST(what_is_left_of_a_fixed_normal_is_measured) {
   double v[3] = {3e-30, 0, 4e-30}, w[2] = {0, 5}, zero[2] = {0, 0};
   ck_assert_double_eq_tol(frame_project(3, 4, v), 0.6, 1e-15);
   ck_assert_double_eq(v[0], 1);
@@ -76,9 +72,8 @@ START_TEST(what_is_left_of_a_fixed_normal_is_measured) {
   ck_assert_double_eq(frame_project(2, 2, w), 0);
   ck_assert_double_eq(frame_project(2, 0, zero), 0);
 }
-END_TEST
 
-START_TEST(corner_frames_are_inverted) {
+TEST(corner_frames_are_inverted) {
   double two[4] = {0.6, -0.8, 0, 1}, basis[9];
   double edge[9] = {0, -1, 0, 0.8, 0, -0.6};
   double corner[9] = {0, -1, 0, 0.8, 0, -0.6, 0.36, 0.48, 0.8};
@@ -94,18 +89,16 @@ START_TEST(corner_frames_are_inverted) {
   frame_invert(3, 0, corner, basis);
   expect_inverse(3, corner, basis);
 }
-END_TEST
 
-START_TEST(edge_along_a_fixed_axis_is_held_along_it) {
+TEST(edge_along_a_fixed_axis_is_held_along_it) {
   double edge[9] = {0, -1, 0, 0.6, 0.8, 0};
   unsigned char held[3];
   ck_assert_int_eq(frame_complete(3, 2, 4, edge, held), 0);
   ck_assert_int_eq(held[2], 1);
   ck_assert_double_eq(fabs(edge[8]), 1);
 }
-END_TEST
 
-START_TEST(dependent_normals_are_refused) {
+TEST(dependent_normals_are_refused) {
   double same[4] = {0, 1, 0, 1}, opposite[9] = {0, 0, 1, 0, 0, -1};
   double flat[9] = {1, 0, 0, 0, 1, 0, 0.6, 0.8, 0};
   double caught[9] = {0, 1, 0, 0, -1, 0};
@@ -115,10 +108,9 @@ START_TEST(dependent_normals_are_refused) {
   ck_assert_int_eq(frame_complete(3, 3, 0, flat, held), -1);
   ck_assert_int_eq(frame_complete(3, 2, 5, caught, held), -1);
 }
-END_TEST
 
 /* Faces from x = 0, lengths in the ratio "grow", on a parabola or a slope. */
-START_TEST(parabola_bends_at_its_axis_a_slope_does_not) {
+TEST(parabola_bends_at_its_axis_a_slope_does_not) {
   static const double grow[] = {0.25, 1.0, 4.0};
   for (int k = 0; k < 6; ++k) {
     double x[10] = {0.0}, n[3], h = 0.1;
@@ -135,12 +127,5 @@ START_TEST(parabola_bends_at_its_axis_a_slope_does_not) {
     ck_assert_int_eq(mirrors_bend(&m, &g, 0, 3, n), 0);
   }
 }
-END_TEST
 
-UNIT_MAIN("frame", one_normal_gives_a_right_handed_orthonormal_frame,
-          tangent_of_the_plane_is_the_normal_turned_left,
-          fixed_components_leave_the_normal_and_become_tangents,
-          what_is_left_of_a_fixed_normal_is_measured,
-          corner_frames_are_inverted, edge_along_a_fixed_axis_is_held_along_it,
-          dependent_normals_are_refused,
-          parabola_bends_at_its_axis_a_slope_does_not)
+UNIT_MAIN("frame")

@@ -1,6 +1,5 @@
 /* src/contact/friction.c, none.c, tresca.c, coulomb.c: every law of the list.
  */
-#include "base/base.h"
 #include "contact/friction.h"
 #include "support/unit.h"
 
@@ -53,7 +52,7 @@ static void expect_sound(const friction_ops *law, const friction_limit *g) {
   ck_assert_double_eq(g->g0[2] + row_sum(&g->B, 2), 0);
 }
 
-START_TEST(every_law_is_sound) {
+TEST(every_law_is_sound) {
   line l;
   line_init(&l);
   for (int k = 0; friction_list[k] != NULL; ++k) {
@@ -73,9 +72,8 @@ START_TEST(every_law_is_sound) {
     memory_free(param);
   }
 }
-END_TEST
 
-START_TEST(wrong_value_names_node_and_time) {
+TEST(wrong_value_names_node_and_time) {
   static const double wrong[] = {-0.1, NAN, HUGE_VAL};
   line l;
   line_init(&l);
@@ -93,21 +91,19 @@ START_TEST(wrong_value_names_node_and_time) {
     }
   }
 }
-END_TEST
 
-START_TEST(name_is_found_in_full_and_in_any_case) {
+TEST(name_is_found_in_full_and_in_any_case) {
   ck_assert_ptr_eq(friction_find("coulomb"), &coulomb_friction);
   ck_assert_ptr_eq(friction_find("None"), &none_friction);
   ck_assert_ptr_null(friction_find("COUL"));
   ck_assert_ptr_null(friction_find(""));
 }
-END_TEST
 
-START_TEST(tresca_limit_is_traction_times_area) {
+TEST(tresca_limit_is_traction_times_area) {
   line l;
   friction_limit g;
   friction_card card = {0};
-  expression *e = NULL;
+  OWNED expression *e = NULL;
   int column;
   line_init(&l);
   ck_assert_int_eq(expression_compile("10*x + t", NULL, NULL, &e, &column), OK);
@@ -121,12 +117,10 @@ START_TEST(tresca_limit_is_traction_times_area) {
   ck_assert_double_eq(g.g0[4], 44 * 0.25);
   ck_assert_ptr_null(g.B.start);
   friction_limit_free(&g);
-  memory_free(e);
 }
-END_TEST
 
 /* Two cards on one surface: each fills its own rows, whatever the order. */
-START_TEST(coulomb_cards_share_one_matrix) {
+TEST(coulomb_cards_share_one_matrix) {
   static const int some[] = {4, 1}, others[] = {3};
   line l;
   friction_limit g;
@@ -144,7 +138,6 @@ START_TEST(coulomb_cards_share_one_matrix) {
   ck_assert_int_eq(g.B.start[N], 3);
   friction_limit_free(&g);
 }
-END_TEST
 
 static status both_cards(const line *l, friction_limit *g) {
   static const int some[] = {0}, others[] = {1, 3};
@@ -157,27 +150,11 @@ done:
   return st;
 }
 
-START_TEST(refused_memory_is_reported_and_given_back) {
+TEST(refused_memory_is_reported_and_given_back) {
   line l;
   line_init(&l);
-  size_t before = memory_in_use();
-  for (long k = 1;; ++k) {
-    friction_limit g = {0};
-    memory_refuse(k, 0);
-    status st = both_cards(&l, &g);
-    memory_refuse(0, 0);
-    friction_limit_free(&g);
-    ck_assert_uint_eq(memory_in_use(), before);
-    if (st == OK) {
-      ck_assert_int_gt(k, 9);
-      break;
-    }
-    ck_assert_int_eq(st, ERR_MEMORY);
-  }
+  friction_limit g = {0};
+  UNIT_REFUSED(9, both_cards(&l, &g), friction_limit_free(&g));
 }
-END_TEST
 
-UNIT_MAIN("friction", every_law_is_sound, wrong_value_names_node_and_time,
-          name_is_found_in_full_and_in_any_case,
-          tresca_limit_is_traction_times_area, coulomb_cards_share_one_matrix,
-          refused_memory_is_reported_and_given_back)
+UNIT_MAIN("friction")

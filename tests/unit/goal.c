@@ -6,7 +6,6 @@
 #include "accuracy/goal/goal.h"
 
 #include "accuracy/accuracy.h"
-#include "base/base.h"
 #include "effects/goal/parts.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
@@ -29,14 +28,13 @@ static double value(const goal_case *g, const double *u, const double *r) {
 }
 
 static void find_adjoint(goal_case *g, const double *u, const double *r) {
-  contact_adjoint *a = NULL;
+  OWNED contact_adjoint *a = NULL;
   ck_assert_int_eq(contact_adjoint_new(&g->c.cp, u, r, &a), OK);
   ck_assert_ptr_nonnull(a);
   ck_assert_int_eq(contact_adjoint_solve(a, g->j, g->psi, g->y, &g->solver),
                    OK);
   memcpy(g->stick, contact_adjoint_stick(a),
          (size_t)g->c.cp.m * sizeof *g->stick);
-  memory_free(a);
 }
 
 /* 1: a force acts on the unknown. */
@@ -110,7 +108,7 @@ static int solve_changed(goal_case *g, const double *df, double sign,
 }
 
 /* Cases of two and three dimensions: without friction, local, nonlocal. */
-START_TEST(adjoint_is_the_derivative_by_the_load) {
+TESTS(adjoint_is_the_derivative_by_the_load, 6) {
   static const double eps = 1e-6;
   const int dim = 2 + _i % 2, kind = _i / 2;
   int slip = 0, stick = 0, open = 0, checked = 0;
@@ -141,11 +139,10 @@ START_TEST(adjoint_is_the_derivative_by_the_load) {
   ck_assert_int_gt(slip, 0);
   ck_assert_int_eq(stick > 0, kind > 0);
 }
-END_TEST
 
 /* Local and nonlocal friction in two and three dimensions: where an increment
  * before has left the nodes. */
-START_TEST(adjoint_is_the_derivative_by_the_positions_of_stick) {
+TESTS(adjoint_is_the_derivative_by_the_positions_of_stick, 4) {
   static const double eps = 1e-6;
   const int dim = 2 + _i % 2;
   int checked = 0;
@@ -170,11 +167,10 @@ START_TEST(adjoint_is_the_derivative_by_the_positions_of_stick) {
   }
   ck_assert_int_ge(checked, 6);
 }
-END_TEST
 
 /* After slip nodes are at their limit and at rest: on whichever side of it
  * rounding puts them. The contraction is that of nodes that go on. */
-START_TEST(nodes_at_rest_have_one_adjoint) {
+TESTS(nodes_at_rest_have_one_adjoint, 4) {
   const int dim = 2 + _i % 2;
   int slipped = 0;
   for (unsigned long long seed = 1; seed <= 12; ++seed) {
@@ -199,17 +195,16 @@ START_TEST(nodes_at_rest_have_one_adjoint) {
   }
   ck_assert_int_gt(slipped, 0);
 }
-END_TEST
 
 /* A block that slides on one node of its foot may turn about it, but for
  * rounding. */
-START_TEST(a_block_that_rocks_has_no_adjoint) {
+TESTS(a_block_that_rocks_has_no_adjoint, 6) {
   const case_block_data d = {.columns = 4,
                              .layers = 2 + _i,
                              .nu = 0.2,
                              .mu = 0.3,
                              .top = {0.0, -1e-3}};
-  contact_case c = case_block(&d);
+  CONTACT_CASE c = case_block(&d);
   contact_adjoint *a = NULL;
   double rate;
   for (int i = 0; i <= d.columns; ++i) c.u[2 * i] = -1.0;
@@ -222,26 +217,23 @@ START_TEST(a_block_that_rocks_has_no_adjoint) {
   ck_assert_ptr_null(a);
   ck_assert_int_eq(contraction_rate(&c.cp, c.u, c.r, NULL, &rate), OK);
   ck_assert(rate == HUGE_VAL);
-  case_free(&c);
 }
-END_TEST
 
 /* du, and with it J, by loads df and sticks ds: the transpose of the adjoint.
  */
 static double change_of(const goal_case *g, const double *df, const double *ds,
                         double *du) {
-  contact_adjoint *a = NULL;
+  OWNED contact_adjoint *a = NULL;
   double sum = 0.0, dr[MOST];
   ck_assert_int_eq(contact_adjoint_new(&g->c.cp, g->c.u, g->c.r, &a), OK);
   ck_assert_int_eq(contact_adjoint_change(a, df, ds, du), OK);
-  memory_free(a);
   contact_apply(&g->c.cp, du, dr);
   for (int k = 0; k < g->c.cp.m; ++k)
     sum += g->j[k] * du[k] + g->psi[k] * (dr[k] - df[k]);
   return sum;
 }
 
-START_TEST(changes_are_the_transpose_of_the_adjoint) {
+TESTS(changes_are_the_transpose_of_the_adjoint, 6) {
   const int dim = 2 + _i % 2, kind = _i / 2;
   for (unsigned long long seed = 1; seed <= 6; ++seed) {
     goal_case g = goal_new(dim, kind == 0 ? 0.0 : 0.4, kind == 2, seed);
@@ -259,7 +251,6 @@ START_TEST(changes_are_the_transpose_of_the_adjoint) {
     case_free(&g.c);
   }
 }
-END_TEST
 
 /* ---- an operator in the place of the matrix ------------------------------ */
 
@@ -301,7 +292,7 @@ static void solve(void *ctx, const double *rhs, double *x, double *Ax) {
   contact_product(m, b->cp->A, x, Ax);
 }
 
-START_TEST(an_operator_gives_what_its_matrix_does) {
+TESTS(an_operator_gives_what_its_matrix_does, 6) {
   const int dim = 2 + _i % 2, kind = _i / 2;
   for (unsigned long long seed = 1; seed <= 6; ++seed) {
     goal_case g = goal_new(dim, kind == 0 ? 0.0 : 0.4, kind == 2, seed);
@@ -343,10 +334,9 @@ START_TEST(an_operator_gives_what_its_matrix_does) {
     case_free(&g.c);
   }
 }
-END_TEST
 
 /* Displacements and forces that miss equations and conditions a little. */
-START_TEST(error_of_the_solver_is_that_of_a_disturbed_solution) {
+TESTS(error_of_the_solver_is_that_of_a_disturbed_solution, 6) {
   static const double eps = 1e-8;
   const int dim = 2 + _i % 2, kind = _i / 2;
   for (unsigned long long seed = 1; seed <= 12; ++seed) {
@@ -367,10 +357,9 @@ START_TEST(error_of_the_solver_is_that_of_a_disturbed_solution) {
     case_free(&g.c);
   }
 }
-END_TEST
 
 /* Close to each limit, on both sides of it. */
-START_TEST(verdicts_change_at_their_limits) {
+TEST(verdicts_change_at_their_limits) {
   static const struct {
     double error, ends, supports;
     double few, near;
@@ -396,19 +385,17 @@ START_TEST(verdicts_change_at_their_limits) {
     ck_assert_int_eq(goal_evaluate(&e).verdict, cases[k].verdict);
   }
 }
-END_TEST
 
 /* By a zone of few nodes three times the estimate may be missing. */
-START_TEST(few_nodes_have_a_wider_band) {
+TEST(few_nodes_have_a_wider_band) {
   goal_estimate e = {.error = -0.5, .magnitude = 2.0, .product = 5.0};
   const double band = goal_evaluate(&e).band;
   e.few = 0.5;
   ck_assert_double_eq(goal_evaluate(&e).band, band + 1.5);
 }
-END_TEST
 
 /* A zone that began with few nodes has still what they lacked. */
-START_TEST(sums_keep_the_doubts_of_their_parts) {
+TEST(sums_keep_the_doubts_of_their_parts) {
   const goal_estimate few = {.error = 0.5, .magnitude = 0.5, .few = 0.5};
   goal_estimate sum = {.error = 0.5, .magnitude = 1.0, .product = 5.0};
   ck_assert_int_eq(goal_evaluate(&sum).verdict, GOAL_RELIABLE);
@@ -418,21 +405,19 @@ START_TEST(sums_keep_the_doubts_of_their_parts) {
   ck_assert_double_eq(r.error, 1.0);
   ck_assert_double_eq_tol(r.band, 0.1 * 1.5 + 1.5, 1e-15);
 }
-END_TEST
 
 /* Elements without error, as in uniform stress under a curved gap. */
-START_TEST(ends_of_rounding_are_no_ends) {
+TEST(ends_of_rounding_are_no_ends) {
   const goal_estimate e = {
       .error = 2.0, .magnitude = 2.0, .product = 1e-15, .ends = 1e-15};
   const goal_result r = goal_evaluate(&e);
   ck_assert_int_eq(r.verdict, GOAL_RELIABLE);
   ck_assert_double_eq(r.ends, 0.0);
 }
-END_TEST
 
 /* A parabola is its own; what has no integral beside it is rough, here by 1.5
  * times the mean 2/pi of |sin|, but for a rule of 16 pieces. */
-START_TEST(parabolas_have_the_integral) {
+TEST(parabolas_have_the_integral) {
   for (int k = 0; k < 2; ++k) {
     double d[GOAL_PIECES + 1], rough;
     for (int i = 0; i <= GOAL_PIECES; ++i) {
@@ -443,10 +428,9 @@ START_TEST(parabolas_have_the_integral) {
     ck_assert_double_eq_tol(rough, k * 3.0 / M_PI, 0.02);
   }
 }
-END_TEST
 
 /* Points of an edge lie on the circle through its ends and its middle. */
-START_TEST(points_of_an_edge_lie_on_its_arc) {
+TEST(points_of_an_edge_lie_on_its_arc) {
   static const double angle = 1.2, turn = 0.3;
   double ends[2][2], out[2];
   for (int c = 0; c < 2; ++c) {
@@ -460,25 +444,5 @@ START_TEST(points_of_an_edge_lie_on_its_arc) {
     ck_assert_double_eq_tol(hypot(x[0], x[1]), 1.0, 1e-14);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("goal");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, adjoint_is_the_derivative_by_the_load, 0, 6);
-  tcase_add_loop_test(
-      tests, error_of_the_solver_is_that_of_a_disturbed_solution, 0, 6);
-  tcase_add_loop_test(
-      tests, adjoint_is_the_derivative_by_the_positions_of_stick, 0, 4);
-  tcase_add_loop_test(tests, nodes_at_rest_have_one_adjoint, 0, 4);
-  tcase_add_loop_test(tests, a_block_that_rocks_has_no_adjoint, 0, 6);
-  tcase_add_loop_test(tests, changes_are_the_transpose_of_the_adjoint, 0, 6);
-  tcase_add_loop_test(tests, an_operator_gives_what_its_matrix_does, 0, 6);
-  tcase_add_test(tests, verdicts_change_at_their_limits);
-  tcase_add_test(tests, few_nodes_have_a_wider_band);
-  tcase_add_test(tests, sums_keep_the_doubts_of_their_parts);
-  tcase_add_test(tests, ends_of_rounding_are_no_ends);
-  tcase_add_test(tests, parabolas_have_the_integral);
-  tcase_add_test(tests, points_of_an_edge_lie_on_its_arc);
-  return unit_run("goal", tests);
-}
+UNIT_MAIN("goal")

@@ -2,7 +2,6 @@
  * src/effects/goal/jumps.c, between.c: what goals lack by corners and by forces
  * between the nodes, on surfaces made here, against their closed forms.
  */
-#include "base/base.h"
 #include "effects/goal/parts.h"
 #include "support/formula.h"
 #include "support/grid.h"
@@ -81,7 +80,7 @@ static void floor_end(floor_run *f) { memory_free((mesh *)f->r.msh); }
 
 /* ---- loads that meet ----------------------------------------------------- */
 
-START_TEST(loads_of_one_stress_are_not_torn) {
+TEST(loads_of_one_stress_are_not_torn) {
   static const double stress[2][2] = {{3.0, 0.7}, {0.7, -2.0}};
   const double n[] = {0.6, 0.8}, m[] = {-0.28, 0.96};
   for (int k = 0; k < 2; ++k) {
@@ -101,10 +100,9 @@ START_TEST(loads_of_one_stress_are_not_torn) {
     ck_assert(!goal_is_torn(2, &p, n, &p, m, 1));
   }
 }
-END_TEST
 
 /* Their difference counts against each of their parts alone. */
-START_TEST(loads_are_torn_by_their_own_size) {
+TEST(loads_are_torn_by_their_own_size) {
   const double n[] = {0.6, 0.8};
   for (int part = 0; part < 3; ++part)
     for (int k = 0; k < 2; ++k) {
@@ -116,7 +114,6 @@ START_TEST(loads_are_torn_by_their_own_size) {
       ck_assert_int_eq(goal_is_torn(2, &p, n, &q, n, 1), k);
     }
 }
-END_TEST
 
 /* ---- corners of the gap -------------------------------------------------- */
 
@@ -187,11 +184,12 @@ static const corner_case corners[] = {
     {{0, 1, 2, 3, 4, 5, 6, 7}, -1, 0, 0, 0, 0, 0},
 };
 
-START_TEST(corners_press_by_what_the_gap_turns) { check_corner(&corners[_i]); }
-END_TEST
+TESTS(corners_press_by_what_the_gap_turns, sizeof corners / sizeof *corners) {
+  check_corner(&corners[_i]);
+}
 
 /* Of two corners the sharper, whichever is first. */
-START_TEST(sharpest_corner_is_the_largest) {
+TEST(sharpest_corner_is_the_largest) {
   static const corner_case two[] = {{.slope = {1, 1, 3, 3, 3, 3, 4, 4}},
                                     {.slope = {1, 1, 2, 2, 2, 2, 4, 4}}};
   for (int k = 0; k < 2; ++k) {
@@ -204,10 +202,9 @@ START_TEST(sharpest_corner_is_the_largest) {
     floor_end(&f);
   }
 }
-END_TEST
 
 /* Held by the face that stands on it, along the normal of that. */
-START_TEST(planes_of_symmetry_are_held_faces) {
+TEST(planes_of_symmetry_are_held_faces) {
   static const struct {
     int node, above, held, is;
   } cases[] = {
@@ -228,11 +225,10 @@ START_TEST(planes_of_symmetry_are_held_faces) {
     floor_end(&f);
   }
 }
-END_TEST
 
 /* ---- between the nodes --------------------------------------------------- */
 
-START_TEST(points_of_an_edge_lie_on_its_arc) {
+TEST(points_of_an_edge_lie_on_its_arc) {
   const double turn = 0.3, a[] = {sin(turn), cos(turn)}, b[] = {-a[0], a[1]};
   const double out[] = {0.0, 1.0 - a[1]}, none[] = {0.0, 0.0};
   double x[3];
@@ -244,10 +240,9 @@ START_TEST(points_of_an_edge_lie_on_its_arc) {
     ck_assert_double_eq_tol(x[1], a[1], 1e-15);
   }
 }
-END_TEST
 
 /* Of a parabola itself, and of a wave without an integral. */
-START_TEST(parabolas_have_the_integral) {
+TEST(parabolas_have_the_integral) {
   enum { N = GOAL_PIECES };
   double d[N + 1], rough;
   for (int k = 0; k <= N; ++k) d[k] = 3 - 0.5 * k - 7.0 * k * (N - k) / (N * N);
@@ -259,10 +254,9 @@ START_TEST(parabolas_have_the_integral) {
   /* sum |sin(2 pi k/N)| = 2/tan(pi/N) */
   ck_assert_double_eq_tol(rough, 1.5 / N * 2 / tan(M_PI / N), 1e-14);
 }
-END_TEST
 
 /* An arc of 2 * turn with one pressure and one friction along it. */
-START_TEST(tractions_follow_the_arc) {
+TEST(tractions_follow_the_arc) {
   const double turn = 0.2, p = 2.0, t = 0.6, w = 0.3, h = 0.01;
   for (int k = 0; k < 4; ++k) {
     floor_run f;
@@ -300,13 +294,12 @@ START_TEST(tractions_follow_the_arc) {
     floor_end(&f);
   }
 }
-END_TEST
 
 /*
  * Friction of a limit 1 + x^2 and more on an edge of length 1: the integral of
  * x^2 - x is -1/6, and that of x (x - 1/2) (x - 1), which is no parabola, 0.
  */
-START_TEST(values_between_the_nodes_are_those_of_the_formula) {
+TEST(values_between_the_nodes_are_those_of_the_formula) {
   floor_run f;
   double z[2 * MOST] = {0.0}, F[2 * MOST] = {0.0}, sum, size = 0.0;
   floor_new(&f, 3);
@@ -336,7 +329,6 @@ START_TEST(values_between_the_nodes_are_those_of_the_formula) {
   formula_release(&f.contact->friction.card.value);
   floor_end(&f);
 }
-END_TEST
 
 /* Two edges of weight 1 on which J changes by 2 t, or by nothing. */
 static double doubt(const double *t, const double *slip, int lips, int stuck,
@@ -369,7 +361,7 @@ static double doubt(const double *t, const double *slip, int lips, int stuck,
   return sum;
 }
 
-START_TEST(friction_that_turns_back_is_doubted) {
+TEST(friction_that_turns_back_is_doubted) {
   double of[4];
   const double even[] = {1.0, 1.0, 1.0};
   /* Half of (t + t') z, and half of that more in the plane. */
@@ -382,10 +374,9 @@ START_TEST(friction_that_turns_back_is_doubted) {
   ck_assert_double_eq(doubt((double[]){1, -3, -3}, even, 0, 1, 0, of), 0.0);
   ck_assert_double_eq(doubt((double[]){1, 3, 3}, even, 0, 0, 0, of), 0.0);
 }
-END_TEST
 
 /* Where slip falls to less than twice of what it rises by on both sides. */
-START_TEST(friction_that_may_stop_is_doubted) {
+TEST(friction_that_may_stop_is_doubted) {
   const double t[] = {1, 3, 5};
   double of[4];
   ck_assert_double_eq_tol(doubt(t, (double[]){1, 0.63, 1}, 0, 0, 0, of),
@@ -399,32 +390,14 @@ START_TEST(friction_that_may_stop_is_doubted) {
   ck_assert_double_eq_tol(doubt(t, (double[]){0.1, 1, 1.5}, 0, 0, 0, of), 6.0,
                           1e-14);
 }
-END_TEST
 
 /* A gap that is 0.1 rougher than its parabola moves the adjoint force along the
  * normal, 1 and 2, over an area of 0.5; not where the edge is open. */
-START_TEST(rough_gaps_are_doubted) {
+TEST(rough_gaps_are_doubted) {
   double of[4];
   const double t[] = {1, 1, 1}, slip[] = {0, 0, 0};
   ck_assert_double_eq_tol(doubt(t, slip, 0, 0, 0.1, of),
                           0.5 * 0.1 * (1 + 2) / 0.5, 1e-14);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("goal_surface");
-  tcase_add_test(tests, loads_of_one_stress_are_not_torn);
-  tcase_add_test(tests, loads_are_torn_by_their_own_size);
-  tcase_add_loop_test(tests, corners_press_by_what_the_gap_turns, 0,
-                      sizeof corners / sizeof *corners);
-  tcase_add_test(tests, sharpest_corner_is_the_largest);
-  tcase_add_test(tests, planes_of_symmetry_are_held_faces);
-  tcase_add_test(tests, points_of_an_edge_lie_on_its_arc);
-  tcase_add_test(tests, parabolas_have_the_integral);
-  tcase_add_test(tests, tractions_follow_the_arc);
-  tcase_add_test(tests, values_between_the_nodes_are_those_of_the_formula);
-  tcase_add_test(tests, friction_that_turns_back_is_doubted);
-  tcase_add_test(tests, friction_that_may_stop_is_doubted);
-  tcase_add_test(tests, rough_gaps_are_doubted);
-  return unit_run("goal_surface", tests);
-}
+UNIT_MAIN("goal_surface")

@@ -1,7 +1,6 @@
 /* tests/support/grid.c: the meshes the other tests rest on. */
 #include "support/grid.h"
 
-#include "base/base.h"
 #include "support/unit.h"
 
 static double elem_measure(const mesh *m, int e) {
@@ -26,16 +25,13 @@ static void measures_add_up(const mesh *m, double expected) {
   ck_assert_double_eq_tol(sum, expected, 1e-12);
 }
 
-START_TEST(elements_fill_the_box_with_positive_measure) {
-  mesh *a = make_grid_2d((int[]){3, 4}, (double[]){2, 5});
-  mesh *b = make_grid_3d((int[]){2, 3, 4}, (double[]){1, 2, 3});
+TEST(elements_fill_the_box_with_positive_measure) {
+  OWNED mesh *a = make_grid_2d((int[]){3, 4}, (double[]){2, 5});
+  OWNED mesh *b = make_grid_3d((int[]){2, 3, 4}, (double[]){1, 2, 3});
   measures_add_up(a, 10);
   measures_add_up(b, 6);
   ck_assert_double_eq(b->size, 3);
-  memory_free(a);
-  memory_free(b);
 }
-END_TEST
 
 /* Normal of a face times its measure, turned as mesh.h says. */
 static void face_vector(const mesh *m, int f, double *n) {
@@ -53,7 +49,7 @@ static void face_vector(const mesh *m, int f, double *n) {
   }
 }
 
-START_TEST(side_faces_point_outward_and_have_the_area_of_the_side) {
+TEST(side_faces_point_outward_and_have_the_area_of_the_side) {
   mesh *m[] = {make_grid_2d((int[]){3, 4}, (double[]){2, 5}),
                make_grid_3d((int[]){2, 3, 4}, (double[]){2, 5, 3})};
   const double length[] = {2, 5, 3};
@@ -78,21 +74,15 @@ START_TEST(side_faces_point_outward_and_have_the_area_of_the_side) {
     memory_free(m[k]);
   }
 }
-END_TEST
 
-START_TEST(joined_meshes_keep_both_bodies_apart) {
-  mesh *a = make_grid_2d((int[]){2, 2}, (double[]){1, 1});
-  mesh *m = grid_join(a, a, (double[]){3, 0});
+TEST(joined_meshes_keep_both_bodies_apart) {
+  OWNED mesh *a = make_grid_2d((int[]){2, 2}, (double[]){1, 1});
+  OWNED mesh *m = grid_join(a, a, (double[]){3, 0});
   ck_assert_int_eq(m->n_node, 18);
   ck_assert_double_eq(m->x[2 * 9], 3);
   measures_add_up(m, 2);
   for (int e = 8; e < 16; ++e)
     for (int k = 0; k < 3; ++k) ck_assert_int_ge(m->elem[3 * e + k], 9);
-  memory_free(a);
-  memory_free(m);
 }
-END_TEST
 
-UNIT_MAIN("grid", elements_fill_the_box_with_positive_measure,
-          side_faces_point_outward_and_have_the_area_of_the_side,
-          joined_meshes_keep_both_bodies_apart)
+UNIT_MAIN("grid")

@@ -2,7 +2,6 @@
  * src/output/hdf5: JOB.h5 read back with the library; growth
  * and cutting; kills, full disks and refused memory.
  */
-#include "base/base.h"
 #include "output/hdf5/file.h"
 #include "support/folder.h"
 #include "support/made_up.h"
@@ -25,8 +24,7 @@ static const output_options plain = {.version = "1.2.3", .threads = 1};
 
 /* All numbers of a dataset (caller frees), its sizes in dims; NULL: none. */
 static double *dataset(const char *dir, const char *name, int dims[2]) {
-  char path[100];
-  snprintf(path, sizeof path, "%s/block.h5", dir);
+  PRINTED(path, "%s/block.h5", dir);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0) return NULL;
@@ -82,10 +80,9 @@ static status write_file(made_up *made, const char *dir, int told,
 /* Record i (from 1) of a vector field against the formula. */
 static void vector_is(const char *dir, const char *group, int array, int n,
                       int dim, int i) {
-  char name[80];
   int dims[2];
-  snprintf(name, sizeof name, "%s/%05d", group, i);
-  double *x = dataset(dir, name, dims);
+  PRINTED(name, "%s/%05d", group, i);
+  FREED double *x = dataset(dir, name, dims);
   ck_assert_msg(x != NULL, "%s", name);
   ck_assert_int_eq(dims[0], n);
   ck_assert_int_eq(dims[1], 3);
@@ -93,7 +90,6 @@ static void vector_is(const char *dir, const char *group, int array, int n,
     for (int k = 0; k < 3; ++k)
       ck_assert(x[3 * id + k] ==
                 (k < dim ? made_up_value(array, dim * id + k, i) : 0));
-  free(x);
 }
 
 /* Everything of increment i that depends on it. */
@@ -121,26 +117,23 @@ static void increment_is(const made_up *made, const char *dir, int i) {
 /* Increments whose time is there. */
 static int count_reached(const char *dir) {
   int dims[2] = {0, 0}, n = 0;
-  double *t = dataset(dir, "/history/time", dims);
+  FREED double *t = dataset(dir, "/history/time", dims);
   while (t != NULL && n < dims[0] && !isnan(t[n])) ++n;
-  free(t);
   return n;
 }
 
 static void rows_are(const char *dir, int n) {
   int dims[2];
-  double *t = dataset(dir, "/history/time", dims);
+  FREED double *t = dataset(dir, "/history/time", dims);
   ck_assert_int_eq(dims[0], n);
   for (int i = 0; i < n; ++i) ck_assert(t[i] == 0.5 * (i + 1));
-  free(t);
 }
 
-START_TEST(fields_read_back_exactly) {
+TEST(fields_read_back_exactly) {
   for (int dim = 2; dim <= 3; ++dim) {
-    char dir[64];
     int dims[2];
-    folder_new(dir);
-    made_up *made = made_up_new(dim, 3, 4);
+    FOLDER(dir);
+    MADE_UP *made = made_up_new(dim, 3, 4);
     ck_assert_int_eq(write_file(made, dir, 4, 1), OK);
     for (int i = 1; i <= 4; ++i) increment_is(made, dir, i);
     rows_are(dir, 4);
@@ -169,17 +162,13 @@ START_TEST(fields_read_back_exactly) {
     for (int id = 0; id < made->surface.n; ++id)
       ck_assert(x[id] == -made_up_value(MADE_RC, dim * id, 2) / 0.25);
     free(x);
-    made_up_free(made);
-    folder_remove(dir);
   }
 }
-END_TEST
 
-START_TEST(mesh_and_surface_stand_in_the_file) {
-  char dir[64];
+TEST(mesh_and_surface_stand_in_the_file) {
   int dims[2];
-  folder_new(dir);
-  made_up *made = made_up_new(3, 2, 1);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(3, 2, 1);
   const mesh *m = made->msh;
   made->m.unit.length = "mm";
   made->m.unit.force = "N";
@@ -200,30 +189,24 @@ START_TEST(mesh_and_surface_stand_in_the_file) {
   x = dataset(dir, "/contact/normal/00001", dims);
   ck_assert(x[0] == 0 && x[1] == -1 && x[2] == 0);
   free(x);
-  double *faces = dataset(dir, "/contact/faces", dims);
-  double *points = dataset(dir, "/contact/points", (int[2]){0, 0});
+  FREED double *faces = dataset(dir, "/contact/faces", dims);
+  FREED double *points = dataset(dir, "/contact/points", (int[2]){0, 0});
   ck_assert_int_eq(dims[0], 8); /* 2 x 2 squares of two triangles           */
   for (int i = 0; i < 24; ++i) ck_assert(points[3 * (int)faces[i] + 1] == 0);
-  free(points);
-  free(faces);
   attribute_is(dir, "/", "version", "1.2.3");
   attribute_is(dir, "/", "title", made->m.name.title);
   attribute_is(dir, "/contact/pressure", "unit", "N/mm^2");
   attribute_is(dir, "/history/strain_energy", "unit", "N*mm");
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* A side of two contacts, and an edge of theirs: each node bears the number of
  * its first contact, and the faces are those of the contacts, one by one. */
-START_TEST(contacts_have_their_nodes_and_faces) {
+TEST(contacts_have_their_nodes_and_faces) {
   static const char *const sides[] = {"TOP", "BOTTOM", "LEFT"};
   for (int dim = 2; dim <= 3; ++dim) {
-    char dir[64];
     int dims[2], n = 0;
-    folder_new(dir);
-    made_up *made = made_up_new(dim, 2, 1);
+    FOLDER(dir);
+    MADE_UP *made = made_up_new(dim, 2, 1);
     const mesh *m = made->msh;
     contact three[3];
     made->m.n.contact = 3;
@@ -241,9 +224,9 @@ START_TEST(contacts_have_their_nodes_and_faces) {
     o.dir = dir;
     ck_assert_int_eq(hdf5_open(&made->m, m, &o, NULL, &h), OK);
     ck_assert_int_eq(hdf5_close(h, 1), OK);
-    double *no = dataset(dir, "/contact/node_no", dims);
-    double *first = dataset(dir, "/contact/contact_no", dims);
-    double *faces = dataset(dir, "/contact/faces", (int[2]){0, 0});
+    FREED double *no = dataset(dir, "/contact/node_no", dims);
+    FREED double *first = dataset(dir, "/contact/contact_no", dims);
+    FREED double *faces = dataset(dir, "/contact/faces", (int[2]){0, 0});
     ck_assert(no != NULL && first != NULL && faces != NULL);
     const int nodes = dims[0];
     for (int c = 0; c < 3; ++c) {
@@ -264,26 +247,16 @@ START_TEST(contacts_have_their_nodes_and_faces) {
         on += no[p] == (double)m->node_no[g->node_id[i]];
       ck_assert_int_eq(on, 1);
     }
-    free(no);
-    free(first);
-    free(faces);
-    made_up_free(made);
-    folder_remove(dir);
   }
 }
-END_TEST
 
-START_TEST(more_increments_than_expected_are_kept) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 3);
+TEST(more_increments_than_expected_are_kept) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 3);
   ck_assert_int_eq(write_file(made, dir, 60, 1), OK);
   for (int i = 1; i <= 60; ++i) increment_is(made, dir, i);
   rows_are(dir, 60);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* As if so many stood there: their places are that of the first one. */
 static void claim_records(hdf5_file *h, int n) {
@@ -296,11 +269,11 @@ static void claim_records(hdf5_file *h, int n) {
   h->now.n_record = n;
 }
 
-START_TEST(records_of_six_digits_are_kept) {
+TEST(records_of_six_digits_are_kept) {
   enum { BEFORE = 99998, ALL = 100002 };
-  char dir[64], name[40];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 1, 4);
+  char name[40];
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 1, 4);
   output_options o = plain;
   hdf5_file *h = NULL;
   o.dir = dir;
@@ -317,71 +290,52 @@ START_TEST(records_of_six_digits_are_kept) {
   hdf5_record_name(name, sizeof name, ALL - 1);
   ck_assert_str_eq(name, "100002");
   ck_assert_int_eq(hdf5_close(h, 0), OK);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(room_not_used_is_cut_at_the_end) {
-  char dir[64];
+TEST(room_not_used_is_cut_at_the_end) {
   int dims[2];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 50);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 50);
   ck_assert_int_eq(write_file(made, dir, 7, 1), OK);
   rows_are(dir, 7);
   increment_is(made, dir, 7);
   ck_assert_ptr_null(dataset(dir, "/fields/u/00008", dims));
   ck_assert_int_eq(write_file(made, dir, 7, 0), OK); /* a failed run          */
-  double *t = dataset(dir, "/history/time", dims);
+  FREED double *t = dataset(dir, "/history/time", dims);
   ck_assert_int_eq(dims[0], 50);
   ck_assert(t[6] == 3.5 && isnan(t[7]) && isnan(t[49]));
-  free(t);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(frequency_chooses_the_records) {
-  char dir[64];
+TEST(frequency_chooses_the_records) {
   int dims[2];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 5);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 5);
   made->steps[0].output.frequency = 2;
   ck_assert_int_eq(write_file(made, dir, 5, 1), OK);
-  double *total = dataset(dir, "/fields/total", dims);
+  FREED double *total = dataset(dir, "/fields/total", dims);
   ck_assert_int_eq(dims[0], 3);
   ck_assert(total[0] == 2 && total[1] == 4 && total[2] == 5);
-  free(total);
   rows_are(dir, 5);
   made->steps[0].output.frequency = -1;
   hdf5_file *h = NULL;
   ck_assert_int_eq(hdf5_open(&made->m, made->msh, &plain, NULL, &h), OK);
   ck_assert_ptr_null(h);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(missing_arrays_are_not_zero) {
-  char dir[64];
+TEST(missing_arrays_are_not_zero) {
   int dims[2];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 1);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 1);
   made->s.body.stress = NULL;
   ck_assert_int_eq(write_file(made, dir, 1, 1), OK);
-  double *x = dataset(dir, "/fields/mises/00001", dims);
+  FREED double *x = dataset(dir, "/fields/mises/00001", dims);
   ck_assert(isnan(x[0]) && isnan(x[made->msh->n_elem - 1]));
-  free(x);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(scene_without_contact_has_no_surface) {
-  char dir[64];
+TEST(scene_without_contact_has_no_surface) {
   int dims[2];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 1);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 1);
   hdf5_file *h = NULL;
   output_options o = plain;
   o.dir = dir;
@@ -393,20 +347,15 @@ START_TEST(scene_without_contact_has_no_surface) {
   ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
   ck_assert_int_eq(hdf5_close(h, 1), OK);
   ck_assert_ptr_null(dataset(dir, "/contact/points", dims));
-  double *u = dataset(dir, "/fields/u/00001", dims);
+  FREED double *u = dataset(dir, "/fields/u/00001", dims);
   ck_assert_ptr_nonnull(u);
-  free(u);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* Supports that change from step to step change the contact surface. */
-START_TEST(node_that_leaves_the_surface_has_no_value) {
-  char dir[64];
+TEST(node_that_leaves_the_surface_has_no_value) {
   int dims[2];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 3, 2);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 3, 2);
   hdf5_file *h = NULL;
   output_options o = plain;
   o.dir = dir;
@@ -419,8 +368,8 @@ START_TEST(node_that_leaves_the_surface_has_no_value) {
   made_up_advance(made, 2);
   ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
   ck_assert_int_eq(hdf5_close(h, 1), OK);
-  double *first = dataset(dir, "/contact/gap/00001", dims);
-  double *second = dataset(dir, "/contact/gap/00002", dims);
+  FREED double *first = dataset(dir, "/contact/gap/00001", dims);
+  FREED double *second = dataset(dir, "/contact/gap/00002", dims);
   ck_assert_int_eq(dims[0], 4);
   const int item[] = {0, -1, 1, 2};
   for (int i = 0; i < 4; ++i) {
@@ -430,18 +379,12 @@ START_TEST(node_that_leaves_the_surface_has_no_value) {
     else
       ck_assert(second[i] == made_up_value(MADE_GAP, item[i], 2));
   }
-  free(first);
-  free(second);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(group_names_with_slashes_and_twins_are_kept) {
-  char dir[64];
+TEST(group_names_with_slashes_and_twins_are_kept) {
   int dims[2];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 1);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 1);
   const char *kept[2] = {made->msh->group[1].name, made->msh->group[2].name};
   made->msh->group[1].name = "a/b";
   made->msh->group[2].name = "BODY"; /* also the name of the surface         */
@@ -454,10 +397,7 @@ START_TEST(group_names_with_slashes_and_twins_are_kept) {
   free(x);
   made->msh->group[1].name = kept[0];
   made->msh->group[2].name = kept[1];
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* ---- kills ------------------------------------------------------------ */
 
@@ -500,13 +440,12 @@ static int run_and_kill(const char *dir, int expected, int until,
   return n;
 }
 
-START_TEST(killed_at_any_moment_keeps_every_acknowledged_increment) {
+TEST(killed_at_any_moment_keeps_every_acknowledged_increment) {
   int runs_with_results = 0, runs_grown = 0;
-  made_up *made = made_up_new(2, 4, 3);
+  MADE_UP *made = made_up_new(2, 4, 3);
   const int runs = getenv("PROTIS_POINTS") != NULL ? 60 : 18;
   for (int k = 0; k < runs; ++k) {
-    char dir[64];
-    folder_new(dir);
+    FOLDER(dir);
     /* Small forecasts: some kills fall into the making of a larger file. */
     int expected = k % 2 ? 3 : 500;
     int n = run_and_kill(dir, expected, k % 30, 137 * k % 3000);
@@ -517,13 +456,10 @@ START_TEST(killed_at_any_moment_keeps_every_acknowledged_increment) {
     int reached = count_reached(dir); /* perhaps one more than told          */
     ck_assert_int_ge(reached, n);
     if (reached > 0) increment_is(made, dir, reached);
-    folder_remove(dir);
   }
-  made_up_free(made);
   ck_assert_int_ge(runs_with_results, runs - 2);
   ck_assert_int_ge(runs_grown, runs / 3);
 }
-END_TEST
 
 /* ---- disks ------------------------------------------------------------ */
 
@@ -558,16 +494,15 @@ static int run_with_limit(const char *dir, rlim_t most) {
 }
 
 static long size_of(const char *dir, const char *name) {
-  char path[100];
   struct stat info;
-  snprintf(path, sizeof path, "%s/%s", dir, name);
+  PRINTED(path, "%s/%s", dir, name);
   return stat(path, &info) == 0 ? (long)info.st_size : -1;
 }
 
 /* The first increment tells nothing of how many there will be. */
-START_TEST(adapted_increments_take_room_as_they_come) {
+TEST(adapted_increments_take_room_as_they_come) {
   char dir[64];
-  made_up *made = made_up_new(2, 4, 3);
+  MADE_UP *made = made_up_new(2, 4, 3);
   hdf5_file *h = NULL;
   output_options o = plain;
   o.dir = folder_new(dir);
@@ -584,15 +519,13 @@ START_TEST(adapted_increments_take_room_as_they_come) {
     ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
   ck_assert_int_lt(size_of(dir, "block.h5"), 5 * expected);
   ck_assert_int_eq(hdf5_close(h, 1), OK);
-  made_up_free(made);
   folder_remove(dir);
 }
-END_TEST
 
-START_TEST(disk_full_at_any_size_is_told_and_loses_nothing) {
+TEST(disk_full_at_any_size_is_told_and_loses_nothing) {
   char dir[64];
   int dims[2];
-  made_up *made = made_up_new(2, 4, 3);
+  MADE_UP *made = made_up_new(2, 4, 3);
   folder_new(dir);
   ck_assert_int_eq(run_with_limit(dir, RLIM_INFINITY), OK);
   long full = size_of(dir, "block.h5");
@@ -604,16 +537,13 @@ START_TEST(disk_full_at_any_size_is_told_and_loses_nothing) {
     ck_assert_msg(st == OK || st == ERR_FILE, "limit %ld: %d", most, st);
     if (st == ERR_FILE) ++failures;
     ck_assert_int_eq(size_of(dir, "block.h5.tmp"), -1);
-    double *t = dataset(dir, "/history/time", dims);
+    FREED double *t = dataset(dir, "/history/time", dims);
     if (t != NULL) /* the file of the forecast was made and has its rows     */
       for (int i = 1; i <= 3; ++i) increment_is(made, dir, i);
-    free(t);
     folder_remove(dir);
   }
   ck_assert_int_gt(failures, 20);
-  made_up_free(made);
 }
-END_TEST
 
 static int put_text(const char *path, const char *text) {
   FILE *f = fopen(path, "w");
@@ -625,14 +555,13 @@ static int put_text(const char *path, const char *text) {
 /* A file system of its own with so many pages below dir, for this process and
  * its children; -1: not allowed on this machine. */
 static int small_file_system(const char *dir, int pages) {
-  char user[40], group[40], size[40];
-  snprintf(user, sizeof user, "0 %d 1", (int)getuid());
-  snprintf(group, sizeof group, "0 %d 1", (int)getgid());
+  PRINTED(user, "0 %d 1", (int)getuid());
+  PRINTED(group, "0 %d 1", (int)getgid());
   if (syscall(SYS_unshare, CLONE_NEWUSER | CLONE_NEWNS) != 0) return -1;
   if (put_text("/proc/self/uid_map", user) != 0) return -1;
   if (put_text("/proc/self/setgroups", "deny") != 0) return -1;
   if (put_text("/proc/self/gid_map", group) != 0) return -1;
-  snprintf(size, sizeof size, "size=%dk", 4 * pages);
+  PRINTED(size, "size=%dk", 4 * pages);
   return mount("none", dir, "tmpfs", 0, size);
 }
 
@@ -657,13 +586,12 @@ static int run_on_small_disk(made_up *made, const char *dir, int pages) {
   return (int)st;
 }
 
-START_TEST(full_file_system_of_any_size_is_told) {
+TEST(full_file_system_of_any_size_is_told) {
   made_up *made = made_up_new(2, 16, 3); /* a field fills pages of its own */
   int code = 0, failures = 0, pages = 0;
   const int steps = getenv("PROTIS_POINTS") != NULL ? 5 : 4;
   for (; pages < 1500 && code != NOT_ALLOWED; pages += 1 + pages / steps) {
-    char dir[64];
-    folder_new(dir);
+    FOLDER(dir);
     fflush(NULL);
     pid_t pid = fork();
     if (pid == 0) _exit(run_on_small_disk(made, dir, pages + 1));
@@ -673,7 +601,6 @@ START_TEST(full_file_system_of_any_size_is_told) {
     ck_assert_msg(code == OK || code == ERR_FILE || code == NOT_ALLOWED,
                   "%d pages: %d", pages + 1, code);
     if (code == ERR_FILE) ++failures;
-    folder_remove(dir);
   }
   if (code == NOT_ALLOWED)
     fprintf(stderr, "no file system of its own on this machine\n");
@@ -681,13 +608,11 @@ START_TEST(full_file_system_of_any_size_is_told) {
     ck_assert(failures > 15 && code == OK);
   made_up_free(made);
 }
-END_TEST
 
 /* A file that takes nothing, or gives nothing back when it has to grow. */
-START_TEST(failed_writes_and_copies_are_told) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 2);
+TEST(failed_writes_and_copies_are_told) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 2);
   output_options o = plain;
   o.dir = dir;
   const char *const devices[] = {"/dev/full", "/dev/null"};
@@ -712,47 +637,38 @@ START_TEST(failed_writes_and_copies_are_told) {
     ck_assert_int_eq(size_of(dir, "block.h5.tmp"), -1);
     ck_assert_int_eq(count_reached(dir), 2 * k);
   }
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(missing_folder_is_told) {
-  made_up *made = made_up_new(2, 1, 1);
+TEST(missing_folder_is_told) {
+  MADE_UP *made = made_up_new(2, 1, 1);
   ck_assert_int_eq(write_file(made, "/no/such/folder", 1, 1), ERR_FILE);
   ck_assert_ptr_nonnull(strstr(status_message(), "/no/such/folder/block.h5"));
   ck_assert_ptr_nonnull(strstr(status_message(), "No such file"));
-  made_up_free(made);
 }
-END_TEST
 
 /* A run goes on after two of its rows, in its file alone. */
-START_TEST(file_of_another_mesh_is_refused) {
+TEST(file_of_another_mesh_is_refused) {
   for (int cells = 2; cells <= 3; ++cells) {
     char dir[64];
     output_options o = plain;
     hdf5_file *h = NULL;
-    made_up *made = made_up_new(2, 2, 3), *now = made_up_new(2, cells, 3);
+    MADE_UP *made = made_up_new(2, 2, 3), *now = made_up_new(2, cells, 3);
     o.dir = folder_new(dir);
     ck_assert_int_eq(write_file(made, dir, 3, 1), OK);
     const status st = hdf5_open(&now->m, now->msh, &o, &(hdf5_count){2, 2}, &h);
     ck_assert_int_eq(st, cells == 2 ? OK : ERR_FILE);
     ck_assert(st == OK || strstr(status_message(), "is not that of the run"));
     ck_assert_int_eq(hdf5_close(h, 0), OK);
-    made_up_free(made);
-    made_up_free(now);
     folder_remove(dir);
   }
 }
-END_TEST
 
 /* ---- memory ----------------------------------------------------------- */
 
-START_TEST(every_refused_request_is_told_and_leaves_nothing) {
-  char dir[64];
+TEST(every_refused_request_is_told_and_leaves_nothing) {
   int refused = 0;
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 2);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 2);
   ck_assert_int_eq(write_file(made, dir, 12, 1), OK);
   size_t bytes = memory_in_use();
   int files = open_files();
@@ -769,23 +685,6 @@ START_TEST(every_refused_request_is_told_and_leaves_nothing) {
     if (memory_requests() - first < k) break;
   }
   ck_assert_int_gt(refused, 20);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-UNIT_MAIN("hdf5", fields_read_back_exactly, mesh_and_surface_stand_in_the_file,
-          contacts_have_their_nodes_and_faces,
-          more_increments_than_expected_are_kept,
-          records_of_six_digits_are_kept, room_not_used_is_cut_at_the_end,
-          frequency_chooses_the_records, missing_arrays_are_not_zero,
-          scene_without_contact_has_no_surface,
-          node_that_leaves_the_surface_has_no_value,
-          group_names_with_slashes_and_twins_are_kept,
-          killed_at_any_moment_keeps_every_acknowledged_increment,
-          adapted_increments_take_room_as_they_come,
-          disk_full_at_any_size_is_told_and_loses_nothing,
-          full_file_system_of_any_size_is_told,
-          failed_writes_and_copies_are_told, missing_folder_is_told,
-          file_of_another_mesh_is_refused,
-          every_refused_request_is_told_and_leaves_nothing)
+UNIT_MAIN("hdf5")

@@ -1,5 +1,4 @@
 /* src/run/history: increments that are cut, rolled back, given up; energies. */
-#include "base/base.h"
 #include "effects/rows.h"
 #include "run/history/history.h"
 #include "support/text_model.h"
@@ -78,7 +77,7 @@ static status picky_solve(const contact_problem *cp, const void *par,
 }
 
 static run_record run_deck(const char *text, double picky) {
-  text_model s;
+  TEXT_MODEL s;
   solver_ops ops = newton_solver;
   run_record r = {0};
   text_model_read(&s, text, block());
@@ -88,7 +87,7 @@ static run_record run_deck(const char *text, double picky) {
   picky_last = 0.0;
   try_dt = 0.5;
   s.m->steps[0].solver.ops = picky > 0 ? &ops : &newton_solver;
-  void *param = calloc(1, newton_solver.param_size + 1);
+  FREED void *param = calloc(1, newton_solver.param_size + 1);
   if (newton_solver.options != NULL)
     option_defaults(newton_solver.options, param);
   s.m->steps[0].solver.param = param;
@@ -97,12 +96,10 @@ static run_record run_deck(const char *text, double picky) {
   history_sink sink = {.ctx = &r, .increment = keep, .rejected = count};
   ck_assert_int_eq(history_run(s.m, s.msh, effect_table, &sink, &r.unsettled),
                    OK);
-  free(param);
-  text_model_close(&s);
   return r;
 }
 
-START_TEST(cut_increments_are_the_small_increments) {
+TEST(cut_increments_are_the_small_increments) {
   /* The pressure grows by 60 in all: 7.5 an eighth of the step. */
   run_record fine = run_deck(DECK(0.125), 0.0);
   run_record cut = run_deck(DECK(0.5), 60.0 / 8);
@@ -120,7 +117,6 @@ START_TEST(cut_increments_are_the_small_increments) {
     differ = fmax(differ, fabs(coarse.u[i] - fine.u[i]));
   ck_assert_double_gt(differ, 1e-6);
 }
-END_TEST
 
 /* The same for all that keeps a history: the deck from *MATERIAL on. */
 #define HISTORY(law, friction, more, move, procedure)                   \
@@ -155,10 +151,9 @@ static const char *const with_history[] = {
 enum { HISTORIES = sizeof with_history / sizeof *with_history };
 
 /* _i: the deck */
-START_TEST(cut_increments_leave_no_trace) {
-  char small[2000], large[2000];
-  snprintf(small, sizeof small, with_history[_i], "0.125");
-  snprintf(large, sizeof large, with_history[_i], "0.5");
+TESTS(cut_increments_leave_no_trace, HISTORIES) {
+  PRINTED(small, with_history[_i], "0.125");
+  PRINTED(large, with_history[_i], "0.5");
   run_record fine = run_deck(small, 0.0), coarse = run_deck(large, 0.0);
   picky_dt = 0.125;
   run_record cut = run_deck(large, HUGE_VAL);
@@ -175,24 +170,21 @@ START_TEST(cut_increments_leave_no_trace) {
   ck_assert_msg(differ <= 1e-12 * scale, "%g of %g", differ, scale);
   ck_assert_double_gt(apart, 1e-6 * scale);
 }
-END_TEST
 
-START_TEST(increment_that_cannot_be_cut_further_is_unsettled) {
+TEST(increment_that_cannot_be_cut_further_is_unsettled) {
   run_record r = run_deck(DECK(0.5), 1e-3);
   ck_assert_int_eq(r.unsettled, r.accepted);
   ck_assert_int_gt(r.rejected, 0);
   ck_assert_double_eq(r.t[r.accepted - 1], 1.0);
 }
-END_TEST
 
-START_TEST(energies_balance_at_every_increment) {
+TEST(energies_balance_at_every_increment) {
   run_record r = run_deck(DECK(0.0625), 0.0);
   ck_assert_int_eq(r.accepted, 16);
   ck_assert_double_le(r.worst_defect, 1e-12);
 }
-END_TEST
 
-START_TEST(step_ends_at_the_time_asked_for) {
+TEST(step_ends_at_the_time_asked_for) {
   run_record r = run_deck(DECK(0.3), 0.0);
   ck_assert_int_eq(r.accepted, 4);
   ck_assert_double_eq(r.t[3], 1.0);
@@ -200,10 +192,9 @@ START_TEST(step_ends_at_the_time_asked_for) {
   ck_assert_int_eq(r.accepted, 10);
   ck_assert_double_eq(r.t[9], 1.0);
 }
-END_TEST
 
 /* _i: the deck, 0 with as few effects as can be, the others with many. */
-START_TEST(every_refused_request_is_reported) {
+TESTS(every_refused_request_is_reported, HISTORIES) {
   enum { FEW = 120 };
   static const char goals[] =
       "*GOAL, NAME=E, QUANTITY=ENERGY\n"
@@ -214,14 +205,13 @@ START_TEST(every_refused_request_is_reported) {
       "*ACCURACY, MESH=YES, TIME=YES, THEORY=YES\n"
       "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, ENERGY, ZONES, LOOP, WEAR, "
       "GOALS, REACTIONS\n";
-  char whole[2000], text[4000];
-  text_model s;
+  TEXT_MODEL s;
   run_record r = {0};
-  snprintf(whole, sizeof whole, with_history[_i], "0.5");
+  PRINTED(whole, with_history[_i], "0.5");
   const char *begin = strstr(whole, "*STEP\n"), *at = strstr(whole, "*OUTPUT");
-  snprintf(text, sizeof text, "%.*s%s%.*s%s%s", (int)(begin - whole), whole,
-           _i > 0 ? goals : "", (int)(at - begin), begin, _i > 0 ? errors : "",
-           at);
+  PRINTED(text, "%.*s%s%.*s%s%s", (int)(begin - whole), whole,
+          _i > 0 ? goals : "", (int)(at - begin), begin, _i > 0 ? errors : "",
+          at);
   text_model_read(&s, text, block());
   ck_assert_int_eq(s.st, OK);
   r.n_dof = 2 * s.msh->n_node;
@@ -247,12 +237,10 @@ START_TEST(every_refused_request_is_reported) {
     refused += st == ERR_MEMORY;
   }
   ck_assert_int_gt(refused, 50);
-  text_model_close(&s);
 }
-END_TEST
 
 /* |e|_A = 2, of a body whose norm is sqrt(2 8) = 4. */
-START_TEST(error_of_the_solver_is_half_its_square_and_its_part) {
+TEST(error_of_the_solver_is_half_its_square_and_its_part) {
   error_bound e;
   solver_error found = {.norm = 2, .rate = 0.3};
   error_bound_set(&found, 8, &e);
@@ -265,17 +253,5 @@ START_TEST(error_of_the_solver_is_half_its_square_and_its_part) {
   error_bound_set(&found, 0, &e);
   ck_assert_double_eq(e.relative, 0);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("history");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_test(tests, cut_increments_are_the_small_increments);
-  tcase_add_loop_test(tests, cut_increments_leave_no_trace, 0, HISTORIES);
-  tcase_add_test(tests, increment_that_cannot_be_cut_further_is_unsettled);
-  tcase_add_test(tests, energies_balance_at_every_increment);
-  tcase_add_test(tests, step_ends_at_the_time_asked_for);
-  tcase_add_test(tests, error_of_the_solver_is_half_its_square_and_its_part);
-  tcase_add_loop_test(tests, every_refused_request_is_reported, 0, HISTORIES);
-  return unit_run("history", tests);
-}
+UNIT_MAIN("history")

@@ -1,7 +1,6 @@
 /* src/base/system/input.c: what is opened, and what is not. */
 #include "base/system/input.h"
 
-#include "base/base.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
@@ -12,8 +11,7 @@
 static char above[64], home[128];
 
 static void put(const char *name) {
-  char path[200];
-  snprintf(path, sizeof path, "%s/%s", above, name);
+  PRINTED(path, "%s/%s", above, name);
   FILE *f = fopen(path, "w");
   ck_assert_ptr_nonnull(f);
   fputs(name, f);
@@ -51,7 +49,7 @@ static const char *refusal(const char *path) {
   return NULL;
 }
 
-START_TEST(only_plain_files_are_opened) {
+TEST(only_plain_files_are_opened) {
   begin();
   static const char *const good[] = {"plain", "sub/plain", "link", "up/secret"};
   for (int i = 0; i < 4; ++i) ck_assert_ptr_null(refusal(good[i]));
@@ -61,10 +59,9 @@ START_TEST(only_plain_files_are_opened) {
   ck_assert_ptr_nonnull(strstr(refusal("nothing"), "No such file"));
   end();
 }
-END_TEST
 
 /* The folder as ".", in full, and as it is seen from above. */
-START_TEST(safe_stays_below_the_folder) {
+TEST(safe_stays_below_the_folder) {
   static const char *const good[] = {"plain", "./plain", "sub/plain",
                                      "sub/../plain", "sub/./plain"};
   static const char *const bad[] = {"link",
@@ -107,10 +104,9 @@ START_TEST(safe_stays_below_the_folder) {
   ck_assert_int_eq(input_confine("nothing"), ERR_FILE);
   end();
 }
-END_TEST
 
 /* The folder is the one it was: its name may come to mean another. */
-START_TEST(folder_is_held_open) {
+TEST(folder_is_held_open) {
   begin();
   ck_assert_int_eq(input_confine(home), OK);
   ck_assert_int_eq(chdir(above), 0);
@@ -123,7 +119,5 @@ START_TEST(folder_is_held_open) {
   ck_assert_ptr_null(refusal(path));
   end();
 }
-END_TEST
 
-UNIT_MAIN("input", only_plain_files_are_opened, safe_stays_below_the_folder,
-          folder_is_held_open)
+UNIT_MAIN("input")

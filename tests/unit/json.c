@@ -4,7 +4,6 @@
  */
 #include "output/output.h"
 
-#include "base/base.h"
 #include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
@@ -12,8 +11,7 @@
 /* JOB.json of a run of one increment after three cuts, with times where there
  * are passes; the caller frees. */
 static char *write(made_up *made, const pass_table *passes) {
-  char dir[64];
-  folder_new(dir);
+  FOLDER(dir);
   const output_options o = {.dir = dir, .no_timing = passes->n == 0};
   output *out = NULL;
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
@@ -26,7 +24,6 @@ static char *write(made_up *made, const pass_table *passes) {
   ck_assert_int_eq(output_close(out, OK, 1), ERR_UNSETTLED);
   char *text = folder_file(dir, "block.json", NULL);
   ck_assert_ptr_nonnull(text);
-  folder_remove(dir);
   return text;
 }
 
@@ -86,8 +83,8 @@ static made_up *make_increment(void) {
 
 static const pass_table none;
 
-START_TEST(errors_of_an_increment) {
-  made_up *made = make_increment();
+TEST(errors_of_an_increment) {
+  MADE_UP *made = make_increment();
   state_errors *e = &made->s.errors;
   e->rounding = (rounding_loss){1, 99, 0.125, 0.375, 0.75};
   e->error = (error_bound){1, 99, 0.5, 0.25, 99, 0.875, "none", 2};
@@ -136,11 +133,9 @@ START_TEST(errors_of_an_increment) {
             "\"moment_z\": 76,\"normal\": -77,\"tangential\": 78,"
             "\"torque\": 0.125,\"closed_area\": 80,\"open\": 83,"
             "\"slip\": 84,\"stick\": 85,\"pressure_max\": 81}],");
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(solutions_and_theorems_of_an_increment) {
+TEST(solutions_and_theorems_of_an_increment) {
   double u[] = {0, 0, 0, 0};
   contact_status status_of[] = {CONTACT_SLIP, CONTACT_OPEN};
   solution found[2] = {
@@ -149,7 +144,7 @@ START_TEST(solutions_and_theorems_of_an_increment) {
   solution_set set = {.n = 2, .n_found = 2, .found = found};
   theorems_contact rows[2] = {{0, 31, 32, 33, 34, 35, 36, 37, MU_UNDER},
                               {-1, 41, 42, 43, 44, 45, 46, 47, MU_ABOVE}};
-  made_up *made = make_increment();
+  MADE_UP *made = make_increment();
   made->s.errors.solutions = &set;
   made->s.errors.theorems =
       (theorems_report){.asked = 1,
@@ -206,11 +201,9 @@ START_TEST(solutions_and_theorems_of_an_increment) {
             "\"maps_to_contract\": 66,\"violated\": true},"
             "\"inequality_least\": -55,\"inequality_fields\": 56,"
             "\"start_least\": -57,\"violated\": true}}]}");
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(sums_goals_and_passes_of_the_run) {
+TEST(sums_goals_and_passes_of_the_run) {
   static goal_card cards[2] = {
       {.name = "SINK", .quantity = GOAL_DISPLACEMENT, .target = 0.125},
       {.name = "PULL", .quantity = GOAL_FORCE}};
@@ -223,7 +216,7 @@ START_TEST(sums_goals_and_passes_of_the_run) {
                                 {goals[1], 14, 99},
                                 {goals[1], 15, 16},
                                 {goals[0], 17, 99}};
-  made_up *made = make_increment();
+  MADE_UP *made = make_increment();
   made->m.n.goal = 2;
   made->m.accuracy.goals = cards;
   made->s.errors.n_goal = 2;
@@ -269,10 +262,6 @@ START_TEST(sums_goals_and_passes_of_the_run) {
       "\"band\": 0.25,\"solver_error\": 0.0625,"
       "\"error_at_most\": 17,\"verdict\": \"reliable\"}],"
       "\"cpu\": 21,\"changed_next\": \"\"}]},");
-  made_up_free(made);
 }
-END_TEST
 
-UNIT_MAIN("json", errors_of_an_increment,
-          solutions_and_theorems_of_an_increment,
-          sums_goals_and_passes_of_the_run)
+UNIT_MAIN("json")

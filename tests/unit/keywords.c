@@ -3,7 +3,6 @@
  * friction laws and inelastic laws: ranges and defaults as the manual and
  * physics demand, in a list of their own.
  */
-#include "base/base.h"
 #include "contact/friction.h"
 #include "material/law/law.h"
 #include "model/keyword/keyword.h"
@@ -205,7 +204,7 @@ static void compare(const char *of, const option *table, int *n) {
   }
 }
 
-START_TEST(ranges_and_defaults_are_those_of_the_manual) {
+TEST(ranges_and_defaults_are_those_of_the_manual) {
   int n = 0;
   for (const keyword *k = keyword_table; k->name != NULL; ++k)
     compare(k->name, k->options, &n);
@@ -220,21 +219,17 @@ START_TEST(ranges_and_defaults_are_those_of_the_manual) {
   }
   ck_assert_int_eq(n, N_ROW);
 }
-END_TEST
 
 /* 1: the message with that number is told of the cards. */
 static int is_told(const char *number, const char *cards) {
-  char *told = NULL;
+  FREED char *told = NULL;
   size_t size;
-  text_model s;
+  TEXT_MODEL s;
   text_model_read(&s, cards, NULL);
   FILE *out = open_memstream(&told, &size);
   message_print(s.log, out);
   fclose(out);
-  const int found = strstr(told, number) != NULL;
-  free(told);
-  text_model_close(&s);
-  return found;
+  return strstr(told, number) != NULL;
 }
 
 #define BODY "*MATERIAL, NAME=M\n*ELASTIC\n9., 0.3\n"
@@ -242,7 +237,7 @@ static int is_told(const char *number, const char *cards) {
 #define POINTS "*TIME POINTS, NAME=P, GENERATE\n"
 
 /* Fields of data lines, which have no table. */
-START_TEST(numbers_of_data_lines_have_their_ranges) {
+TEST(numbers_of_data_lines_have_their_ranges) {
   static const struct {
     const char *number, *cards; /* of the message; %s: the field */
     const char *right[2], *wrong[2];
@@ -269,14 +264,11 @@ START_TEST(numbers_of_data_lines_have_their_ranges) {
     for (int k = 0; k < 4; ++k) {
       const char *text =
           k < 2 ? rows_of_data[i].right[k] : rows_of_data[i].wrong[k - 2];
-      char cards[300];
       if (text == NULL) continue;
-      snprintf(cards, sizeof cards, rows_of_data[i].cards, text);
+      PRINTED(cards, rows_of_data[i].cards, text);
       ck_assert_msg(is_told(rows_of_data[i].number, cards) == (k >= 2), "%s",
                     cards);
     }
 }
-END_TEST
 
-UNIT_MAIN("keywords", ranges_and_defaults_are_those_of_the_manual,
-          numbers_of_data_lines_have_their_ranges)
+UNIT_MAIN("keywords")

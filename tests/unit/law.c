@@ -2,7 +2,6 @@
  * Every inelastic law, by its row: what any law must satisfy. The states come
  * from random histories of stress, so that alpha is one that can be reached.
  */
-#include "base/base.h"
 #include "support/law_case.h"
 #include "support/unit.h"
 
@@ -137,8 +136,7 @@ static void check_rest(law_case *c) {
   ck_assert(isfinite(limit));
 }
 
-START_TEST(nothing_happens_at_rest) { for_all(1, check_rest); }
-END_TEST
+TEST(nothing_happens_at_rest) { for_all(1, check_rest); }
 
 static void check_dissipation(law_case *c) {
   double out[6 + LAW_ALPHA_MAX];
@@ -152,8 +150,7 @@ static void check_dissipation(law_case *c) {
   if (law_flows(&p)) ck_assert(lost > 0 && isfinite(lost));
 }
 
-START_TEST(dissipation_is_not_negative) { for_all(20, check_dissipation); }
-END_TEST
+TEST(dissipation_is_not_negative) { for_all(20, check_dissipation); }
 
 /* State moved along its rates by h: the energy kept. */
 static double stored_at(law_case *c, const double *out, double h) {
@@ -182,8 +179,7 @@ static void check_power(law_case *c) {
                 power, lost, kept);
 }
 
-START_TEST(power_is_lost_or_kept) { for_all(10, check_power); }
-END_TEST
+TEST(power_is_lost_or_kept) { for_all(10, check_power); }
 
 /* Column of d(rates)/d(*x) by central differences of order 4. */
 static void difference(law_case *c, double *x, double h, double *column) {
@@ -243,11 +239,10 @@ static void check_jacobian(law_case *c) {
   if (!c->card.ops->uses_ei) ck_assert(largest(j.ei_ei, ns * ns) == 0);
 }
 
-START_TEST(jacobian_agrees_with_differences) { for_all(5, check_jacobian); }
-END_TEST
+TEST(jacobian_agrees_with_differences) { for_all(5, check_jacobian); }
 
 /* Creep whose rate is a multiple of a small stress has that slope at rest. */
-START_TEST(slope_of_creep_at_rest) {
+TEST(slope_of_creep_at_rest) {
   static const char *const data[][2] = {{"NORTON", "1E-9, 1."},
                                         {"HYPERBOLIC", "1E-3, 1E-6, 1."}};
   static law_case c;
@@ -259,7 +254,6 @@ START_TEST(slope_of_creep_at_rest) {
     law_case_free(&c);
   }
 }
-END_TEST
 
 /* The coupled matrix from differences of the rates under held strain. */
 static void check_fastest(law_case *c) {
@@ -288,7 +282,7 @@ static void check_fastest(law_case *c) {
 
 /* Where the rate rises less than the stress, or falls, a change of direction is
  * the fastest. */
-START_TEST(change_of_direction_may_be_fastest) {
+TEST(change_of_direction_may_be_fastest) {
   static const struct {
     const char *law, *data;
     int words;
@@ -307,12 +301,8 @@ START_TEST(change_of_direction_may_be_fastest) {
     law_case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(fastest_rate_is_the_largest_eigenvalue) {
-  for_all(5, check_fastest);
-}
-END_TEST
+TEST(fastest_rate_is_the_largest_eigenvalue) { for_all(5, check_fastest); }
 
 /* The same history seen from a turned frame gives turned rates. */
 static void check_frame(law_case *c) {
@@ -332,8 +322,7 @@ static void check_frame(law_case *c) {
   same(c, one, two, c->ns, 1e-11, "rate in a turned frame");
 }
 
-START_TEST(a_turned_stress_gives_turned_rates) { for_all(1, check_frame); }
-END_TEST
+TEST(a_turned_stress_gives_turned_rates) { for_all(1, check_frame); }
 
 /* Plane strain and axisymmetric components are those of 3-D. */
 static void check_plane(law_case *c) {
@@ -358,8 +347,7 @@ static void check_plane(law_case *c) {
   ck_assert(two[4] == 0 && two[5] == 0);
 }
 
-START_TEST(plane_rates_are_those_of_3d) { for_all(1, check_plane); }
-END_TEST
+TEST(plane_rates_are_those_of_3d) { for_all(1, check_plane); }
 
 /* Uniaxial stress along x: y and z flow alike, so zz is carried. */
 static void check_lateral(law_case *c) {
@@ -373,12 +361,11 @@ static void check_lateral(law_case *c) {
   ck_assert_double_eq_tol(out[1], out[2], 1e-14 * out[0]);
 }
 
-START_TEST(lateral_directions_flow_alike) { for_all(1, check_lateral); }
-END_TEST
+TEST(lateral_directions_flow_alike) { for_all(1, check_lateral); }
 
 /* The terms of a series have no order: rates of e^i, what is lost and kept, the
  * fastest rate, the law at its end. */
-START_TEST(terms_have_no_order) {
+TEST(terms_have_no_order) {
   static const char *const data[][3] = {
       {"PRONY", "0.3, 0.1, 0.5\n0.2, 0., 10.\n0.25, 0.3, 200.",
        "0.25, 0.3, 200.\n0.2, 0., 10.\n0.3, 0.1, 0.5"},
@@ -404,10 +391,9 @@ START_TEST(terms_have_no_order) {
     }
   }
 }
-END_TEST
 
 /* Temperatures are from absolute zero: 20 over -273.15 is 293.15 over 0. */
-START_TEST(arrhenius_has_absolute_temperatures) {
+TEST(arrhenius_has_absolute_temperatures) {
   static const double T[] = {20, 293.15, 20}, zero[] = {-273.15, 0, 0};
   static law_case c;
   double out[3][6];
@@ -424,10 +410,9 @@ START_TEST(arrhenius_has_absolute_temperatures) {
   ck_assert_double_eq_tol(log(out[2][0] / out[1][0]),
                           1e4 / 8.314462618 * (1 / 293.15 - 1 / 20.), 1e-10);
 }
-END_TEST
 
 /* R = sigma to e^i at the end over 1/E along the stress, the time to it. */
-START_TEST(end_of_a_series_is_in_closed_form) {
+TEST(end_of_a_series_is_in_closed_form) {
   static const struct {
     const char *law, *data;
     double time, R;
@@ -449,11 +434,10 @@ START_TEST(end_of_a_series_is_in_closed_form) {
     law_case_free(&c);
   }
 }
-END_TEST
 
 /* The inelastic strain of its units, and the only one from that: without the
  * part that it has not. */
-START_TEST(only_unit_follows_from_the_strain) {
+TEST(only_unit_follows_from_the_strain) {
   static const char *const data[][2] = {{"PRONY", "0.3, 0.1, 0.5"},
                                         {"PRONY", "0.3, 0., 0.5"},
                                         {"PRONY", "0., 0.1, 0.5"},
@@ -479,7 +463,6 @@ START_TEST(only_unit_follows_from_the_strain) {
     law_case_free(&c);
   }
 }
-END_TEST
 
 /* Linear rows: rates are the Jacobian times the state. */
 static void check_linear(law_case *c) {
@@ -506,8 +489,7 @@ static void check_linear(law_case *c) {
   same(c, out, sum, ns + na, 1e-12, "linear law");
 }
 
-START_TEST(a_linear_law_is_its_jacobian) { for_all(5, check_linear); }
-END_TEST
+TEST(a_linear_law_is_its_jacobian) { for_all(5, check_linear); }
 
 /* All others flow under a deviator, and without volume. */
 static void check_deviator(law_case *c) {
@@ -521,10 +503,7 @@ static void check_deviator(law_case *c) {
   same(c, pressed, out, c->ns + c->n_alpha, 1e-9, "pressure");
 }
 
-START_TEST(a_law_that_is_not_linear_has_no_pressure) {
-  for_all(5, check_deviator);
-}
-END_TEST
+TEST(a_law_that_is_not_linear_has_no_pressure) { for_all(5, check_deviator); }
 
 static void check_flows(law_case *c) {
   double out[6 + LAW_ALPHA_MAX];
@@ -536,8 +515,7 @@ static void check_flows(law_case *c) {
   }
 }
 
-START_TEST(a_law_flows_where_a_rate_is_not_zero) { for_all(5, check_flows); }
-END_TEST
+TEST(a_law_flows_where_a_rate_is_not_zero) { for_all(5, check_flows); }
 
 /*
  * A law that is not in the table: a dashpot of cubic viscosity with a recovery
@@ -613,7 +591,7 @@ static const law_ops trial_law = {.name = "TRIAL",
                                   .jacobian = trial_jacobian,
                                   .dissipation = trial_dissipation};
 
-START_TEST(a_trial_law_passes) {
+TEST(a_trial_law_passes) {
   static check_fn *const checks[] = {
       check_rest,  check_dissipation, check_power,   check_jacobian,
       check_frame, check_fastest,     check_lateral, check_linear,
@@ -621,16 +599,5 @@ START_TEST(a_trial_law_passes) {
   for (size_t i = 0; i < sizeof checks / sizeof *checks; ++i)
     for_all_of(&trial_law, 1, checks[i]);
 }
-END_TEST
 
-UNIT_MAIN("law", change_of_direction_may_be_fastest,
-          arrhenius_has_absolute_temperatures,
-          end_of_a_series_is_in_closed_form, only_unit_follows_from_the_strain,
-          terms_have_no_order, nothing_happens_at_rest,
-          dissipation_is_not_negative, power_is_lost_or_kept,
-          jacobian_agrees_with_differences, slope_of_creep_at_rest,
-          fastest_rate_is_the_largest_eigenvalue,
-          a_turned_stress_gives_turned_rates, plane_rates_are_those_of_3d,
-          lateral_directions_flow_alike, a_linear_law_is_its_jacobian,
-          a_law_that_is_not_linear_has_no_pressure,
-          a_law_flows_where_a_rate_is_not_zero, a_trial_law_passes)
+UNIT_MAIN("law")

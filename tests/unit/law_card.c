@@ -3,7 +3,6 @@
  * every law wrong in turn, tables over temperature, expressions of time, the
  * spellings of Abaqus, moduli after all terms have relaxed.
  */
-#include "base/base.h"
 #include "support/law_case.h"
 #include "support/text_model.h"
 #include "support/unit.h"
@@ -12,12 +11,11 @@ enum { TEXT = 4000, VALUES = 64 };
 
 /* Deck with a material of E = 1000, nu = 0.3 and the cards given. */
 static void read_deck(text_model *s, const char *elastic, const char *cards) {
-  char text[2 * TEXT];
-  snprintf(text, sizeof text,
-           "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC%s\n1000., 0.3\n"
-           "%s\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
-           "*END STEP\n",
-           elastic, cards);
+  PRINTED(text,
+          "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC%s\n1000., 0.3\n"
+          "%s\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
+          "*END STEP\n",
+          elastic, cards);
   text_model_read(s, text, NULL);
 }
 
@@ -34,14 +32,13 @@ static void near(double a, double b) {
   ck_assert_msg(fabs(a - b) <= 1e-13 * fabs(b), "%.16g, expected %.16g", a, b);
 }
 
-START_TEST(every_example_reads_as_it_is) {
+TEST(every_example_reads_as_it_is) {
   for (int i = 0; law_list[i] != NULL; ++i) {
     static law_case c;
-    char cards[TEXT];
     double value[VALUES];
-    text_model s;
-    snprintf(cards, sizeof cards, "*INELASTIC, LAW=%s\n%s", law_list[i]->name,
-             law_list[i]->example);
+    TEXT_MODEL s;
+    PRINTED(cards, "*INELASTIC, LAW=%s\n%s", law_list[i]->name,
+            law_list[i]->example);
     read_deck(&s, "", cards);
     ck_assert_msg(s.st == OK, "%s", cards);
     ck_assert_int_eq(law_case_new(law_list[i], 0, NULL, 1000, .3, SOLID_3D, &c),
@@ -55,10 +52,8 @@ START_TEST(every_example_reads_as_it_is) {
     for (int k = 0; k < law_n_value(law_of(&s)); ++k)
       ck_assert(value[k] == c.value[k]);
     law_case_free(&c);
-    text_model_close(&s);
   }
 }
-END_TEST
 
 /* Word number k of a line, "" behind its end. */
 static const char *word_of(const char *line, int k, int *length) {
@@ -96,11 +91,10 @@ static void replace_field(const char *example, int row, int n, int at,
 /* The deck with that data must give the message. */
 static void refused(const law_ops *ops, const char *data, const char *number,
                     const char *words) {
-  char cards[TEXT + 80];
-  char *told = NULL;
+  FREED char *told = NULL;
   size_t size;
-  text_model s;
-  snprintf(cards, sizeof cards, "*INELASTIC, LAW=%s\n%s", ops->name, data);
+  TEXT_MODEL s;
+  PRINTED(cards, "*INELASTIC, LAW=%s\n%s", ops->name, data);
   read_deck(&s, "", cards);
   FILE *out = open_memstream(&told, &size);
   message_print(s.log, out);
@@ -108,8 +102,6 @@ static void refused(const law_ops *ops, const char *data, const char *number,
   ck_assert_msg(s.st == ERR_DECK, "%s", cards);
   ck_assert_msg(strstr(told, number) != NULL && strstr(told, words) != NULL,
                 "%s\n%s %s expected, told\n%s", cards, number, words, told);
-  free(told);
-  text_model_close(&s);
 }
 
 static void check_line(const law_ops *ops, const option *table, int row) {
@@ -128,7 +120,7 @@ static void check_line(const law_ops *ops, const option *table, int row) {
   }
 }
 
-START_TEST(every_field_is_checked) {
+TEST(every_field_is_checked) {
   for (int i = 0; law_list[i] != NULL; ++i) {
     const law_ops *ops = law_list[i];
     int row = 0;
@@ -136,24 +128,21 @@ START_TEST(every_field_is_checked) {
     if (ops->terms != NULL) check_line(ops, ops->terms, row);
   }
 }
-END_TEST
 
-START_TEST(a_threshold_may_fall) {
+TEST(a_threshold_may_fall) {
   static const char *const cards[] = {
       "*INELASTIC, LAW=PERZYNA\n60., 150., 0., 3., -20., 5.",
       "*INELASTIC, LAW=CHABOCHE\n60., 150., 3., -20., 5.\n2E4, 100."};
   for (int i = 0; i < 2; ++i) {
-    text_model s;
+    TEXT_MODEL s;
     read_deck(&s, "", cards[i]);
     ck_assert_msg(s.st == OK, "%s", cards[i]);
-    text_model_close(&s);
   }
 }
-END_TEST
 
-START_TEST(tables_are_linear_in_temperature) {
+TEST(tables_are_linear_in_temperature) {
   double value[VALUES];
-  text_model s;
+  TEXT_MODEL s;
   read_deck(&s, "",
             "*INELASTIC, LAW=CHABOCHE\n60., 150., 3., , , 20.\n2E4, 100., 20.\n"
             "40., 100., 4., , , 60.\n1E4, 200., 60.");
@@ -169,11 +158,9 @@ START_TEST(tables_are_linear_in_temperature) {
   near(value[1], 150);
   values_at(&s, 0, 1000, value);
   near(value[6], 200);
-  text_model_close(&s);
 }
-END_TEST
 
-START_TEST(coefficients_may_vary_in_time) {
+TEST(coefficients_may_vary_in_time) {
   double value[VALUES];
   text_model s;
   read_deck(&s, "", "*INELASTIC, LAW=MAXWELL\n\"2 + sin(t)\"");
@@ -193,23 +180,21 @@ START_TEST(coefficients_may_vary_in_time) {
                     LAW_VARIES_TIME | LAW_VARIES_TEMPERATURE);
   text_model_close(&s);
   for (unsigned bits = 0; bits < 4; ++bits) {
-    char cards[80];
-    snprintf(cards, sizeof cards, "*INELASTIC, LAW=USER\n\"1E-9*q%s%s\"",
-             bits & LAW_VARIES_TIME ? "*(1 + t)" : "",
-             bits & LAW_VARIES_TEMPERATURE ? "*exp(temp)" : "");
+    PRINTED(cards, "*INELASTIC, LAW=USER\n\"1E-9*q%s%s\"",
+            bits & LAW_VARIES_TIME ? "*(1 + t)" : "",
+            bits & LAW_VARIES_TEMPERATURE ? "*exp(temp)" : "");
     read_deck(&s, "", cards);
     ck_assert_int_eq(s.st, OK);
     ck_assert_uint_eq(law_varies(law_of(&s)), bits);
     text_model_close(&s);
   }
 }
-END_TEST
 
 /* Rate of e^i along x at t = 4 under 100 along x. */
 static double creep_rate(const char *cards, double w, double dt) {
   static law_case c;
   double ei_rate[6], alpha_rate[LAW_ALPHA_MAX], value[VALUES];
-  text_model s;
+  TEXT_MODEL s;
   read_deck(&s, "", cards);
   ck_assert_int_eq(s.st, OK);
   law_case_new(&norton_law, 0, NULL, 1000, .3, SOLID_3D, &c);
@@ -223,13 +208,12 @@ static double creep_rate(const char *cards, double w, double dt) {
   c.alpha[0] = w;
   law_rate(&p, ei_rate, alpha_rate);
   law_case_free(&c);
-  text_model_close(&s);
   return ei_rate[0];
 }
 
 /* The factor is 1E-9, 100 cubed 1e6; time hardening with 4^(-1/2) = 1/2. Strain
  * hardening keeps p squared, here 1/4: (1e-3)^2 over half of p = 1/2. */
-START_TEST(creep_cards_of_abaqus) {
+TEST(creep_cards_of_abaqus) {
   near(creep_rate("*CREEP, LAW=TIME\n1E-9, 3., -0.5", 0.25, 1), 5e-4);
   near(creep_rate("*CREEP, LAW=NORTON\n1E-9, 3.", 0.25, 1), 1e-3);
   near(creep_rate("*CREEP\n1E-9, 3., -0.5", 0.25, 1), 1e-6 / 0.25);
@@ -239,23 +223,21 @@ START_TEST(creep_cards_of_abaqus) {
   /* From p = 0: p = 2e-3 sqrt(t), its mean rate over 4. */
   near(creep_rate(strain, 0, 4), 1e-3);
 }
-END_TEST
 
 /* C_xy,xy and the bulk modulus of the matrix the elements get. */
 static void check_moduli(const char *elastic, const char *cards, double shear,
                          double bulk) {
-  text_model s;
+  TEXT_MODEL s;
   read_deck(&s, elastic, cards);
   ck_assert_int_eq(s.st, OK);
   const double *C = s.m->materials[0].C;
   near(C[21], shear);
   near((C[0] + 2 * C[6]) / 3, bulk);
-  text_model_close(&s);
 }
 
 /* The long-term constants are those that are linear between the sets. */
-START_TEST(long_term_moduli_between_two_sets) {
-  text_model s;
+TEST(long_term_moduli_between_two_sets) {
+  TEXT_MODEL s;
   double C[36];
   char text[256];
   const double E = 1500, nu = 0.2, G = E / (2 + 2 * nu), K = E / (3 - 6 * nu);
@@ -272,11 +254,9 @@ START_TEST(long_term_moduli_between_two_sets) {
   /* the largest Poisson number of all: of the second, G = E/2.6, K = E/1.2 */
   near(elastic_table_most(&s.m->materials[0].elastic, 1),
        (3 / (1.2 * .75) - 2 / (2.6 * .5)) / (6 / (1.2 * .75) + 2 / (2.6 * .5)));
-  text_model_close(&s);
 }
-END_TEST
 
-START_TEST(moduli_after_all_terms_have_relaxed) {
+TEST(moduli_after_all_terms_have_relaxed) {
   const double G = 1000 / 2.6, K = 1000 / 1.2;
   const char *abaqus = "*VISCOELASTIC, TIME=PRONY\n.3, .1, 2.\n.2, .15, 9.";
   const char *shear = "*VISCOELASTIC, TIME=PRONY\n.3, , 2.\n.2, , 9.";
@@ -287,10 +267,9 @@ START_TEST(moduli_after_all_terms_have_relaxed) {
   check_moduli(", MODULI=INSTANTANEOUS", abaqus, G, K);
   check_moduli("", own, G, K);
 }
-END_TEST
 
 /* The k-th request of memory fails, for all k: told, and nothing is lost. */
-START_TEST(every_refused_request_is_reported) {
+TEST(every_refused_request_is_reported) {
   static const char *const cards[] = {
       "*INELASTIC, LAW=PRONY\n.3, .1, 2., 20.\n.2, .1, \"3 + t\", 60.",
       "*INELASTIC, LAW=USER\n\"1E-9*q^3\""};
@@ -315,11 +294,5 @@ START_TEST(every_refused_request_is_reported) {
     ck_assert_int_gt(refused, 5);
   }
 }
-END_TEST
 
-UNIT_MAIN("law_card", every_example_reads_as_it_is, every_field_is_checked,
-          a_threshold_may_fall, tables_are_linear_in_temperature,
-          coefficients_may_vary_in_time, creep_cards_of_abaqus,
-          long_term_moduli_between_two_sets,
-          moduli_after_all_terms_have_relaxed,
-          every_refused_request_is_reported)
+UNIT_MAIN("law_card")

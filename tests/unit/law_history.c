@@ -6,10 +6,6 @@
 #include "support/law_case.h"
 #include "support/unit.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 static law_case c;
 
 static void start(const char *name, int words, const char *data, double young,
@@ -59,7 +55,7 @@ static void relaxes(const double *t, const double *expected, int steps) {
 
 static const double at[] = {0, 1, 2, 10};
 
-START_TEST(maxwell_relaxes) {
+TEST(maxwell_relaxes) {
   start("MAXWELL", 0, "2.", 1000, .3, SOLID_3D);
   relaxes(
       at,
@@ -69,10 +65,9 @@ START_TEST(maxwell_relaxes) {
   const double r = 2 * 1.3 / (3 * 2);
   relaxes(at, (double[]){1, exp(-r), exp(-2 * r), exp(-10 * r)}, 400);
 }
-END_TEST
 
 /* Deviatoric flow, e_xx held, the others zero: the mean stress stays. */
-START_TEST(confined_maxwell_keeps_the_mean_stress) {
+TEST(confined_maxwell_keeps_the_mean_stress) {
   const double K = 1000 / 1.2, G = 1000 / 2.6;
   start("MAXWELL", 1, "2.", 1000, .3, PLANE_STRAIN);
   law_drive d = hold_normal;
@@ -89,9 +84,8 @@ START_TEST(confined_maxwell_keeps_the_mean_stress) {
   near(c.sigma[1], .8316056547, 1e-9);
   law_case_free(&c);
 }
-END_TEST
 
-START_TEST(confined_maxwell_creeps_to_the_bulk) {
+TEST(confined_maxwell_creeps_to_the_bulk) {
   start("MAXWELL", 1, "2.", 1000, .3, SOLID_3D);
   law_drive d = {.held = {0, 1, 1}, .sigma_rate = {1}};
   law_case_jump(&c, &d);
@@ -103,10 +97,9 @@ START_TEST(confined_maxwell_creeps_to_the_bulk) {
   near(c.sigma[1] / c.sigma[0], .9741347234, 1e-9);
   law_case_free(&c);
 }
-END_TEST
 
 /* sigma_zz goes to half the stress; e_yy is the free one. */
-START_TEST(plane_strain_maxwell_carries_zz) {
+TEST(plane_strain_maxwell_carries_zz) {
   start("MAXWELL", 1, "2.", 1000, .3, PLANE_STRAIN);
   law_drive d = {.held = {0, 0, 1}, .sigma_rate = {0, 1}};
   law_case_jump(&c, &d);
@@ -116,9 +109,8 @@ START_TEST(plane_strain_maxwell_carries_zz) {
   near(c.e[1], 4.199475051e-3, 1e-9);
   law_case_free(&c);
 }
-END_TEST
 
-START_TEST(maxwell_stress_at_constant_rate_levels_off) {
+TEST(maxwell_stress_at_constant_rate_levels_off) {
   start("MAXWELL", 0, "2.", 1000, .3, SOLID_3D);
   law_drive d = hold_x;
   d.e_rate[0] = 1e-3;
@@ -128,10 +120,9 @@ START_TEST(maxwell_stress_at_constant_rate_levels_off) {
   near(c.sigma[0], 1.9865241060, 1e-9);
   law_case_free(&c);
 }
-END_TEST
 
 /* Bulk relaxation: hydrostatic strain decays with tau_bulk. */
-START_TEST(maxwell_bulk_relaxes_if_asked) {
+TEST(maxwell_bulk_relaxes_if_asked) {
   start("MAXWELL", 1, "2., 5.", 1000, .3, SOLID_3D);
   law_drive d = hold_normal;
   for (int i = 0; i < 3; ++i) d.e_rate[i] = 1e-3;
@@ -140,12 +131,11 @@ START_TEST(maxwell_bulk_relaxes_if_asked) {
   near(c.sigma[0], 3e-3 * 1000 / 1.2 * exp(-4 / 5.), 1e-9);
   law_case_free(&c);
 }
-END_TEST
 
 static const double zener_at[] = {0, 1, 6, 30};
 
 /* KELVIN of one unit is ZENER. */
-START_TEST(zener_creeps_and_relaxes) {
+TEST(zener_creeps_and_relaxes) {
   static const char *const names[] = {"ZENER", "KELVIN"};
   for (int k = 0; k < 2; ++k) {
     start(names[k], 0, "500., 3000.", 1000, .3, SOLID_3D);
@@ -162,10 +152,9 @@ START_TEST(zener_creeps_and_relaxes) {
     law_case_free(&c);
   }
 }
-END_TEST
 
 /* Creep: 1/E + t/eta_M + (1 - exp(-t E_K/eta_K))/E_K. */
-START_TEST(burgers_creeps_as_the_sum_of_its_parts) {
+TEST(burgers_creeps_as_the_sum_of_its_parts) {
   start("BURGERS", 0, "8000., 500., 3000.", 1000, .3, PLANE_STRESS);
   load(2);
   law_case_run(&c, &hold_none, 6, 400);
@@ -174,19 +163,17 @@ START_TEST(burgers_creeps_as_the_sum_of_its_parts) {
   near(c.e[2], -.3 * c.e[0], 1e-12);
   law_case_free(&c);
 }
-END_TEST
 
 /* By the exponential of the 2x2 matrix (scipy). */
-START_TEST(burgers_relaxes_to_zero) {
+TEST(burgers_relaxes_to_zero) {
   static const double t[] = {0, 1, 6, 30};
   start("BURGERS", 0, "8000., 500., 3000.", 1000, .3, SOLID_3D);
   relaxes(t, (double[]){1, 0.6518331298418, 0.2138496165521, 0.08209058469504},
           800);
 }
-END_TEST
 
 /* All in one shear and one bulk test: the moduli are the series. */
-START_TEST(prony_moduli_are_the_series) {
+TEST(prony_moduli_are_the_series) {
   const char *data = "0.3, 0.1, 0.5\n0.2, 0., 4.\n0.25, 0.3, 200.";
   const double G = 1000 / 2.6, K = 1000 / 1.2, t = 3;
   const double g =
@@ -202,19 +189,17 @@ START_TEST(prony_moduli_are_the_series) {
   near(c.sigma[5], 2 * G * g, 1e-9);
   law_case_free(&c);
 }
-END_TEST
 
 /* One term with g = k = 1 is the proportional Maxwell body. */
-START_TEST(prony_of_one_full_term_is_maxwell) {
+TEST(prony_of_one_full_term_is_maxwell) {
   start("PRONY", 0, "1., 1., 2.", 1000, .3, SOLID_3D);
   stretch(1e-3);
   law_case_run(&c, &hold_x, 2, 400);
   near(c.sigma[0], exp(-1.), 1e-9);
   law_case_free(&c);
 }
-END_TEST
 
-START_TEST(norton_relaxes) {
+TEST(norton_relaxes) {
   static const double t[] = {0, 1, 10, 100, 1000};
   start("NORTON", 0, "1E-15, 5.", 1e5, .3, SOLID_3D);
   stretch(1e-3);
@@ -229,11 +214,10 @@ START_TEST(norton_relaxes) {
   near(c.e[0], .001 + 1e-4, 1e-12);
   law_case_free(&c);
 }
-END_TEST
 
 /* Both hardenings give A q^n t^(1+m)/(1+m) under constant stress. The rate is
  * infinite at t = 0: the mean over the first step stands for it there. */
-START_TEST(hardening_slows_norton_down) {
+TEST(hardening_slows_norton_down) {
   for (int words = 0; words < 2; ++words) {
     start("NORTON", words, "1E-15, 5., -0.5", 1e5, .3, SOLID_3D);
     load(100);
@@ -251,10 +235,9 @@ START_TEST(hardening_slows_norton_down) {
     law_case_free(&c);
   }
 }
-END_TEST
 
 /* The same by a formula; with strain hardening ((1 + m) p)^(m/(1 + m)). */
-START_TEST(formulas_relax_and_harden) {
+TEST(formulas_relax_and_harden) {
   static const double t[] = {0, 1, 10, 100};
   start("USER", 0, "\"1E-15*q^5\"", 1e5, .3, SOLID_3D);
   relaxes(t, (double[]){100, 99.024273574257, 91.932271522492, 66.874030497642},
@@ -273,10 +256,9 @@ START_TEST(formulas_relax_and_harden) {
   near(c.ei[0], 1e-7 * 50 * 2, 1e-12);
   law_case_free(&c);
 }
-END_TEST
 
 /* Terms over 30 decades of relaxation time: each is where it must be. */
-START_TEST(thirty_decades_of_relaxation_times) {
+TEST(thirty_decades_of_relaxation_times) {
   char data[1000];
   size_t n = 0;
   double limit;
@@ -309,10 +291,9 @@ START_TEST(thirty_decades_of_relaxation_times) {
   ck_assert(isfinite(ei_rate[3]));
   law_case_free(&c);
 }
-END_TEST
 
 /* Temperature 30 above the reference: WLF 10^(17.44*30/81.6), Arrhenius. */
-START_TEST(shifts_run_the_clock) {
+TEST(shifts_run_the_clock) {
   start("MAXWELL", 0, "2.", 1000, .3, SOLID_3D);
   c.card.shift = (law_shift){SHIFT_WLF, 20, 0, 17.44, 51.6, 0};
   near(law_speed(&c.card, 50), pow(10, 17.44 * 30 / 81.6), 1e-13);
@@ -328,10 +309,9 @@ START_TEST(shifts_run_the_clock) {
   near(c.sigma[0], exp(-1.), 1e-9);
   law_case_free(&c);
 }
-END_TEST
 
 /* Hundreds of stress units: A q^n in range though q^n alone is not. */
-START_TEST(large_powers_do_not_overflow) {
+TEST(large_powers_do_not_overflow) {
   double ei_rate[6], alpha_rate[1];
   start("NORTON", 0, "1E-300, 40.", 1e5, .3, SOLID_3D);
   c.sigma[0] = 1e8;
@@ -340,7 +320,6 @@ START_TEST(large_powers_do_not_overflow) {
   near(ei_rate[0], 1e20, 1e-10);
   law_case_free(&c);
 }
-END_TEST
 
 static const law_drive *pull(double rate) {
   static law_drive d;
@@ -350,7 +329,7 @@ static const law_drive *pull(double rate) {
 }
 
 /* sigma = sy + H p + ..., after the onset at t = 0.1. */
-START_TEST(perzyna_is_pulled_and_relaxes) {
+TEST(perzyna_is_pulled_and_relaxes) {
   static const double t[] = {.1, .15, .2, .5, 1};
   start("PERZYNA", 0, "100., 1E4, 1E4", 1e5, .3, SOLID_3D);
   law_case_run(&c, pull(1e-2), .05, 1);
@@ -368,9 +347,8 @@ START_TEST(perzyna_is_pulled_and_relaxes) {
   near(c.sigma[0], 109.0909090909, 1e-9);
   law_case_free(&c);
 }
-END_TEST
 
-START_TEST(bingham_flows_with_its_overstress) {
+TEST(bingham_flows_with_its_overstress) {
   start("BINGHAM", 0, "100., 1E4", 1e5, .3, SOLID_3D);
   load(150);
   law_case_run(&c, &hold_none, 3, 3);
@@ -378,7 +356,6 @@ START_TEST(bingham_flows_with_its_overstress) {
   near(c.ei[1], -1.5 * 50 / 1e4, 1e-12);
   law_case_free(&c);
 }
-END_TEST
 
 /* dp more of plastic strain in a direction, by Heun's method; overstress K, so
  * that the rate is 1. Returns the back stress of a bar, C a_xx. */
@@ -387,14 +364,14 @@ static double flow_along(double direction, double dp, int n) {
   const double C = c.value[5], h = dp / n;
   for (int k = 0; k < n; ++k) {
     memcpy(from, c.alpha, sizeof from);
-    for (int stage = 0; stage < 2; ++stage) {
+    for (int half = 0; half < 2; ++half) {
       c.sigma[0] = C * c.alpha[1] + direction * c.value[1];
       law_point p = law_case_point(&c);
-      law_rate(&p, ei_rate, stage == 0 ? first : second);
+      law_rate(&p, ei_rate, half == 0 ? first : second);
       near(ei_rate[0], direction, 1e-9);
       for (int i = 0; i < 7; ++i)
         c.alpha[i] =
-            from[i] + h * (stage == 0 ? first[i] : (first[i] + second[i]) / 2);
+            from[i] + h * (half == 0 ? first[i] : (first[i] + second[i]) / 2);
     }
   }
   return C * c.alpha[1];
@@ -402,7 +379,7 @@ static double flow_along(double direction, double dp, int n) {
 
 /* C/g (1 - exp(-g p)) at first; cycles of width dp of plastic strain end with
  * the amplitude C/g tanh(g dp/2). */
-START_TEST(armstrong_frederick_back_stress) {
+TEST(armstrong_frederick_back_stress) {
   start("CHABOCHE", 0, "0., 1., 1.\n2E4, 100.", 1e5, .3, SOLID_3D);
   (void)law_case_point(&c);
   near(flow_along(1, .01, 1000), 126.4241117657, 1e-6);
@@ -411,10 +388,9 @@ START_TEST(armstrong_frederick_back_stress) {
   near(X, 92.4234314520, 1e-6);
   law_case_free(&c);
 }
-END_TEST
 
 /* E = 1e5, strain +-1 % at the rate 0.01, two back stresses (scipy). */
-START_TEST(chaboche_cycles) {
+TEST(chaboche_cycles) {
   start("CHABOCHE", 0, "60., 150., 3., 20., 50.\n2E4, 100.\n5E3, 20.", 1e5, .3,
         SOLID_3D);
   law_case_run(&c, pull(1e-2), 1, 4000);
@@ -430,10 +406,9 @@ START_TEST(chaboche_cycles) {
   near(5e3 * c.alpha[7], -36.3974215337, 1e-8);
   law_case_free(&c);
 }
-END_TEST
 
 /* Uniaxial stress in plane stress, axisymmetry and 3-D is that of a bar. */
-START_TEST(a_bar_is_a_bar_in_every_kinematics) {
+TEST(a_bar_is_a_bar_in_every_kinematics) {
   static const kinematics kin[] = {SOLID_3D, PLANE_STRESS, AXISYMMETRIC};
   for (int k = 0; law_list[k] != NULL; ++k) {
     double e[3][4];
@@ -451,11 +426,10 @@ START_TEST(a_bar_is_a_bar_in_every_kinematics) {
     }
   }
 }
-END_TEST
 
 /* Tension with shear xy, then compression with shear yz (scipy, 3x3 tensors):
  * stresses xx, yy, zz, xy, yz and p. */
-START_TEST(chaboche_turns_with_the_path) {
+TEST(chaboche_turns_with_the_path) {
   start("CHABOCHE", 0, "60., 150., 3., 20., 50.\n2E4, 100.\n5E3, 20.", 1e5, .3,
         SOLID_3D);
   const law_drive first = {.held = {1, 1, 1, 1, 1, 1},
@@ -472,18 +446,5 @@ START_TEST(chaboche_turns_with_the_path) {
   near(c.alpha[0], 0.0079002112365, 1e-8);
   law_case_free(&c);
 }
-END_TEST
 
-UNIT_MAIN("law_history", chaboche_turns_with_the_path,
-          a_bar_is_a_bar_in_every_kinematics, maxwell_relaxes,
-          confined_maxwell_keeps_the_mean_stress,
-          confined_maxwell_creeps_to_the_bulk, plane_strain_maxwell_carries_zz,
-          maxwell_stress_at_constant_rate_levels_off,
-          maxwell_bulk_relaxes_if_asked, zener_creeps_and_relaxes,
-          burgers_creeps_as_the_sum_of_its_parts, burgers_relaxes_to_zero,
-          prony_moduli_are_the_series, prony_of_one_full_term_is_maxwell,
-          norton_relaxes, hardening_slows_norton_down,
-          formulas_relax_and_harden, thirty_decades_of_relaxation_times,
-          shifts_run_the_clock, large_powers_do_not_overflow,
-          perzyna_is_pulled_and_relaxes, bingham_flows_with_its_overstress,
-          armstrong_frederick_back_stress, chaboche_cycles)
+UNIT_MAIN("law_history")

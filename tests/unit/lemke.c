@@ -1,5 +1,4 @@
 /* src/solver/lcp.c, lemke.c: complementary pivoting. */
-#include "base/base.h"
 #include "solver/lcp/lcp.h"
 #include "solver/pivoting/lemke.h"
 #include "solver/solver.h"
@@ -69,7 +68,7 @@ static int enumerate(int n, const double *M, const double *q, double *z) {
   return found;
 }
 
-START_TEST(murty_matrix_takes_four_pivots) {
+TEST(murty_matrix_takes_four_pivots) {
   const double M[] = {1, 0, 2, 2, 1, 0, 0, 2, 1}, q[] = {-1, -1, -1};
   double z[3];
   lcp_report rep;
@@ -78,9 +77,8 @@ START_TEST(murty_matrix_takes_four_pivots) {
   for (int i = 0; i < 3; ++i) ck_assert_double_eq_tol(z[i], 1.0 / 3.0, 1e-15);
   ck_assert_int_eq(rep.pivots, 4);
 }
-END_TEST
 
-START_TEST(exponential_example_takes_two_to_the_n_pivots) {
+TEST(exponential_example_takes_two_to_the_n_pivots) {
   for (int n = 4; n <= 10; n += n == 4 ? 4 : 2) {
     double M[100] = {0.0}, q[10], z[10];
     lcp_report rep;
@@ -98,10 +96,9 @@ START_TEST(exponential_example_takes_two_to_the_n_pivots) {
     ck_assert_int_eq(rep.pivots, 10);
   }
 }
-END_TEST
 
 /* The matrix on which the active-set Newton method cycles. */
-START_TEST(newton_cycle_matrix_takes_three_pivots) {
+TEST(newton_cycle_matrix_takes_three_pivots) {
   const double M[] = {3, 2, 0, -1, 1, -3, 1, 1, 1}, q[] = {2, -3, -1};
   double z[3];
   lcp_report rep;
@@ -112,7 +109,6 @@ START_TEST(newton_cycle_matrix_takes_three_pivots) {
   ck_assert_double_eq_tol(z[1], 0.5, 1e-15);
   ck_assert_double_eq_tol(z[2], 2.5, 1e-15);
 }
-END_TEST
 
 /* k rows of numbers in [-2, 2], integers on request. */
 static int random_rows(int n, int whole, unsigned long long *seed,
@@ -146,7 +142,7 @@ static void random_lcp(int kind, int n, unsigned long long *seed, double *M,
   }
 }
 
-START_TEST(random_problems_agree_with_enumeration) {
+TEST(random_problems_agree_with_enumeration) {
   unsigned long long seed = 20240229;
   int solved = 0, rays = 0;
   for (int t = 0; t < 2000; ++t) {
@@ -182,14 +178,14 @@ START_TEST(random_problems_agree_with_enumeration) {
   ck_assert_int_gt(solved, 1200);
   ck_assert_int_gt(rays, 100);
 }
-END_TEST
 
-START_TEST(large_random_problems_are_solved) {
+TEST(large_random_problems_are_solved) {
   unsigned long long seed = 7;
   for (int n = 50; n <= 200; n += 50) {
-    double *M = calloc((size_t)(n * n), sizeof *M);
-    double *G = calloc((size_t)(n * n), sizeof *G);
-    double *q = calloc((size_t)n, sizeof *q), *z = calloc((size_t)n, sizeof *z);
+    FREED double *M = calloc((size_t)(n * n), sizeof *M);
+    FREED double *G = calloc((size_t)(n * n), sizeof *G);
+    FREED double *q = calloc((size_t)n, sizeof *q),
+                 *z = calloc((size_t)n, sizeof *z);
     lcp_report rep;
     for (int i = 0; i < n * n; ++i) G[i] = case_random(&seed) - 0.5;
     for (int i = 0; i < n; ++i) {
@@ -200,13 +196,8 @@ START_TEST(large_random_problems_are_solved) {
     ck_assert_int_eq(lcp_lemke(n, M, q, 0, z, &rep), OK);
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_msg(violation(n, M, q, z) < 1e-11, "n = %d", n);
-    free(M);
-    free(G);
-    free(q);
-    free(z);
   }
 }
-END_TEST
 
 /* ---- contact ------------------------------------------------------------- */
 
@@ -216,7 +207,7 @@ static solver_report solve_direct(const contact_case *c, int max_iter,
   double param[8] = {0.0};
   solver_control control = {.tol = 1e-11, .max_iter = max_iter};
   solver_report rep;
-  void *work = NULL;
+  OWNED void *work = NULL;
   ck_assert(lemke_solver.param_size <= sizeof param);
   ck_assert_int_eq(solver_set_up(&lemke_solver, &c->cp, param, &work), OK);
   ck_assert_int_eq(
@@ -225,7 +216,6 @@ static solver_report solve_direct(const contact_case *c, int max_iter,
   ck_assert_int_eq(ray != NULL, rep.outcome == STOPPED_RAY);
   if (ray != NULL && motion != NULL)
     memcpy(motion, ray, (size_t)c->cp.m * sizeof *motion);
-  memory_free(work);
   return rep;
 }
 
@@ -238,43 +228,37 @@ static void must_solve(const contact_case *c, double tol, const char *what,
   ck_assert_msg(bad <= tol, "%s %d: violation %g", what, k, bad);
 }
 
-START_TEST(plane_problems_are_exact_for_any_friction) {
+TEST(plane_problems_are_exact_for_any_friction) {
   static const double mus[] = {0.0, 0.1, 0.5, 1.0, 2.0, 20.0, 1e4};
   for (int k = 0; k < 1050; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2, 1 + k % 30, mus[k % 7], k % 2, (unsigned long long)k + 77);
     must_solve(&c, k % 7 == 6 ? 1e-10 : 1e-12, "problem", k);
-    case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(space_problems_are_corrected_to_the_exact_cone) {
+TEST(space_problems_are_corrected_to_the_exact_cone) {
   static const double mus[] = {0.0, 0.1, 0.3, 0.5};
   for (int k = 0; k < 100; ++k) {
-    contact_case c = case_any(3, 1 + k % 20, mus[k % 4], k / 4 % 2,
+    CONTACT_CASE c = case_any(3, 1 + k % 20, mus[k % 4], k / 4 % 2,
                               (unsigned long long)k + 177);
     must_solve(&c, 1e-9, "problem", k);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Given limits, limits that other nodes bring, and all at once. */
-START_TEST(given_and_shared_limits_are_solved) {
+TEST(given_and_shared_limits_are_solved) {
   for (int k = 0; k < 300; ++k) {
     unsigned long long seed = (unsigned long long)k + 5;
     int n = 2 + k % 12;
-    contact_case c = case_any(2, n, 0.3, k % 2, seed);
+    CONTACT_CASE c = case_any(2, n, 0.3, k % 2, seed);
     for (int i = 0; i < n; ++i) c.g0[i] = case_random(&seed);
     if (k % 3 == 0) c.cp.B = NULL;
     if (k % 3 == 1)
       for (int i = 0; i < n; ++i) c.B->col[i] = (i + 1) % n;
     must_solve(&c, 1e-12, "problem", k);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Node i decoupled: its tangential unknown is prescribed. */
 static void hold(contact_case *c, unsigned char *held, int dof) {
@@ -285,11 +269,11 @@ static void hold(contact_case *c, unsigned char *held, int dof) {
   c->f[dof] = 0.3 * c->A[dof + m * dof];
 }
 
-START_TEST(held_sided_and_smooth_nodes_agree_with_newton) {
+TEST(held_sided_and_smooth_nodes_agree_with_newton) {
   for (int k = 0; k < 200; ++k) {
     int dim = 2 + k % 2, n = 4 + k % 9, m = dim * n;
-    contact_case c = case_any(dim, n, 0.2, k / 2 % 2, (unsigned long long)k);
-    unsigned char *held = calloc((size_t)m, 1);
+    CONTACT_CASE c = case_any(dim, n, 0.2, k / 2 % 2, (unsigned long long)k);
+    FREED unsigned char *held = calloc((size_t)m, 1);
     double *u = calloc((size_t)m, sizeof *u), param[8] = {0.0};
     c.side_gap = calloc((size_t)(m - n), sizeof *c.side_gap);
     for (int i = 0; i < m - n; ++i) c.side_gap[i] = HUGE_VAL;
@@ -319,12 +303,9 @@ START_TEST(held_sided_and_smooth_nodes_agree_with_newton) {
     }
     if (rep.outcome == CONVERGED)
       ck_assert_msg(apart <= 1e-9 * size, "%d: apart by %g", k, apart / size);
-    free(held);
     free(u);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* ---- one triangle -------------------------------------------------------- */
 
@@ -340,7 +321,7 @@ static contact_case corner(double mu, double fx, double fy) {
   return c;
 }
 
-START_TEST(corner_of_a_triangle_takes_a_listed_solution) {
+TEST(corner_of_a_triangle_takes_a_listed_solution) {
   static const struct {
     double mu, fx, fy;
     int n;
@@ -358,7 +339,7 @@ START_TEST(corner_of_a_triangle_takes_a_listed_solution) {
       {1, 1, .01, 1, {{NAN, 0, 0}}},
   };
   for (size_t k = 0; k < sizeof load / sizeof *load; ++k) {
-    contact_case c = corner(load[k].mu, load[k].fx, load[k].fy);
+    CONTACT_CASE c = corner(load[k].mu, load[k].fx, load[k].fy);
     must_solve(&c, 1e-14, "load", (int)k);
     int hit = 0;
     for (int i = 0; i < load[k].n; ++i) {
@@ -368,18 +349,16 @@ START_TEST(corner_of_a_triangle_takes_a_listed_solution) {
     }
     ck_assert_msg(hit == 1, "load %zu: u_t %.10g r_t %.10g N %.10g", k, c.u[1],
                   c.r[1], -c.r[0]);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* ---- blocks -------------------------------------------------------------- */
 
-START_TEST(pressed_block_of_equal_nodes_is_exact) {
+TEST(pressed_block_of_equal_nodes_is_exact) {
   for (int mu = 0; mu < 2; ++mu) {
     case_block_data d = {
         .columns = 40, .layers = 10, .clamped = 1, .mu = 0.3 * mu};
-    contact_case c = case_block(&d);
+    CONTACT_CASE c = case_block(&d);
     for (int i = 0; i < c.cp.n; ++i) {
       c.f[2 * i] = i == 0 || i == 40 ? 0.5 : 1.0; /* pushed at the contact */
       c.gap[i] = 0.0;
@@ -399,10 +378,8 @@ START_TEST(pressed_block_of_equal_nodes_is_exact) {
     ck_assert_int_ge(solve_direct(&c, 0, NULL).outcome, CONVERGED);
     for (int i = 0; i < c.cp.n; ++i)
       ck_assert_double_eq_tol(c.u[2 * i], 0.25, 1e-13);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A floating block: forces of the resultants given, on its lower nodes. */
 static contact_case loaded_block(double mu, double down, double right,
@@ -444,7 +421,7 @@ static void check_motion(const contact_case *c, const double *v) {
   ck_assert_msg(work > 0.0, "work %g", work);
 }
 
-START_TEST(floating_block_rests_or_ends_in_a_motion) {
+TEST(floating_block_rests_or_ends_in_a_motion) {
   static const struct {
     double mu, down, right, at;
     int rests;
@@ -456,7 +433,7 @@ START_TEST(floating_block_rests_or_ends_in_a_motion) {
   };
   for (size_t k = 0; k < sizeof load / sizeof *load; ++k) {
     double v[34], push = 0.0;
-    contact_case c =
+    CONTACT_CASE c =
         loaded_block(load[k].mu, load[k].down, load[k].right, load[k].at);
     solver_report rep = solve_direct(&c, 0, v);
     ck_assert_msg(rep.outcome == (load[k].rests ? CONVERGED : STOPPED_RAY),
@@ -469,28 +446,24 @@ START_TEST(floating_block_rests_or_ends_in_a_motion) {
     } else {
       check_motion(&c, v);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(limit_of_pivots_stops_the_solver) {
-  contact_case c = case_any(2, 30, 0.3, 0, 3);
+TEST(limit_of_pivots_stops_the_solver) {
+  CONTACT_CASE c = case_any(2, 30, 0.3, 0, 3);
   solver_report rep = solve_direct(&c, 3, NULL);
   ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
   ck_assert_int_eq(rep.iterations, 3);
-  case_free(&c);
 }
-END_TEST
 
 /* Factors 2^k on forces and lengths: the same pivots, the same bits. */
-START_TEST(powers_of_two_change_no_bit) {
+TEST(powers_of_two_change_no_bit) {
   for (int k = 0; k < 60; ++k) {
     int dim = 2 + k % 2, n = 3 + k % 11, e = k % 4 < 2 ? 41 : -37;
     double F = k % 3 == 0 ? 1.0 : ldexp(1.0, e),
            L = ldexp(1.0, 3 * (k % 5) - 7);
-    contact_case a = case_any(dim, n, 0.3 * (k % 3), k / 2 % 2, 9);
-    contact_case b = case_any(dim, n, 0.3 * (k % 3), k / 2 % 2, 9);
+    CONTACT_CASE a = case_any(dim, n, 0.3 * (k % 3), k / 2 % 2, 9);
+    CONTACT_CASE b = case_any(dim, n, 0.3 * (k % 3), k / 2 % 2, 9);
     for (int i = 0; i < a.cp.m * a.cp.m; ++i) b.A[i] *= F / L;
     for (int i = 0; i < a.cp.m; ++i) b.f[i] *= F;
     for (int i = 0; i < n; ++i) b.gap[i] *= L;
@@ -504,22 +477,20 @@ START_TEST(powers_of_two_change_no_bit) {
                     b.u[i] / L);
       ck_assert(b.r[i] == a.r[i] * F);
     }
-    case_free(&a);
-    case_free(&b);
   }
 }
-END_TEST
 
 /* ---- compliance alone ---------------------------------------------------- */
 
-START_TEST(compliance_form_gives_the_same_answer) {
+TEST(compliance_form_gives_the_same_answer) {
   static const double mus[] = {0.0, 0.2, 0.6};
   for (int k = 0; k < 120; ++k) {
     int dim = 2 + k % 2, n = 1 + k % 10, m = dim * n;
-    contact_case c =
+    CONTACT_CASE c =
         case_any(dim, n, mus[k % 3], k / 2 % 2, (unsigned long long)k + 31);
     double *W = calloc((size_t)(m * m), sizeof *W), param[8] = {0.0};
-    double *q = calloc((size_t)m, sizeof *q), *u = calloc((size_t)m, sizeof *u);
+    FREED double *q = calloc((size_t)m, sizeof *q),
+                 *u = calloc((size_t)m, sizeof *u);
     double *r = calloc((size_t)m, sizeof *r), apart = 0.0, size = 0.0;
     must_solve(&c, 1e-9, "stiffness", k);
     ck_assert(case_inverse(m, c.A, W));
@@ -542,60 +513,22 @@ START_TEST(compliance_form_gives_the_same_answer) {
     }
     ck_assert_msg(apart <= 1e-8 * size, "%d: apart by %g", k, apart / size);
     free(W);
-    free(q);
-    free(u);
     free(r);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* ---- memory -------------------------------------------------------------- */
 
-START_TEST(every_refused_request_is_reported_without_loss) {
-  contact_case c = case_any(3, 4, 0.3, 0, 3);
+TEST(every_refused_request_is_reported_without_loss) {
+  CONTACT_CASE c = case_any(3, 4, 0.3, 0, 3);
   double M[16] = {2, 1, 0, 0, 1, 2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, z[4];
   double q[4] = {-1, -1, -1, -1}, param[8] = {0.0};
-  size_t before = memory_in_use();
   lcp_report rep;
-  int refused = 0;
-  for (long k = 1;; ++k) {
-    void *work = NULL;
-    memory_refuse(k, 0);
-    status st = solver_set_up(&lemke_solver, &c.cp, param, &work);
-    memory_refuse(0, 0);
-    memory_free(work);
-    ck_assert_uint_eq(memory_in_use(), before);
-    if (st == OK) break;
-    ck_assert_int_eq(st, ERR_MEMORY);
-    ck_assert_ptr_null(work);
-    ++refused;
-  }
-  ck_assert_int_gt(refused, 20);
-  for (long k = 1;; ++k) {
-    memory_refuse(k, 0);
-    status st = lcp_lemke(4, M, q, 0, z, &rep);
-    memory_refuse(0, 0);
-    ck_assert_uint_eq(memory_in_use(), before);
-    if (st == OK) break;
-    ck_assert_int_eq(st, ERR_MEMORY);
-  }
-  case_free(&c);
+  void *work;
+  UNIT_REFUSED(21, solver_set_up(&lemke_solver, &c.cp, param, &work),
+               ck_assert((work == NULL) == refused);
+               memory_free(work));
+  UNIT_REFUSED(1, lcp_lemke(4, M, q, 0, z, &rep), );
 }
-END_TEST
 
-UNIT_MAIN("lemke", murty_matrix_takes_four_pivots,
-          exponential_example_takes_two_to_the_n_pivots,
-          newton_cycle_matrix_takes_three_pivots,
-          random_problems_agree_with_enumeration,
-          large_random_problems_are_solved,
-          plane_problems_are_exact_for_any_friction,
-          space_problems_are_corrected_to_the_exact_cone,
-          given_and_shared_limits_are_solved,
-          held_sided_and_smooth_nodes_agree_with_newton,
-          corner_of_a_triangle_takes_a_listed_solution,
-          pressed_block_of_equal_nodes_is_exact,
-          floating_block_rests_or_ends_in_a_motion,
-          limit_of_pivots_stops_the_solver, powers_of_two_change_no_bit,
-          compliance_form_gives_the_same_answer,
-          every_refused_request_is_reported_without_loss)
+UNIT_MAIN("lemke")

@@ -1,7 +1,6 @@
 /* src/base/system/limits.c: groups of a folder that stands for the root. */
 #include "base/system/limits.h"
 
-#include "base/base.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
@@ -40,7 +39,7 @@ static void begin(void) {
       "SwapFree: 1000 kB\n");
 }
 
-START_TEST(machine_counts_what_is_available) {
+TEST(machine_counts_what_is_available) {
   begin();
   limits l = read_limits();
   ck_assert_double_eq(l.memory, 9000.0 * 1024.0);
@@ -48,10 +47,9 @@ START_TEST(machine_counts_what_is_available) {
   ck_assert_int_ge(l.cores, 1);
   folder_remove(root);
 }
-END_TEST
 
 /* The least of a group and all above it; pages of files are free. */
-START_TEST(groups_of_version_2_are_climbed) {
+TEST(groups_of_version_2_are_climbed) {
   begin();
   put("/proc/self/cgroup", "0::/a/b\n");
   put("/sys/fs/cgroup/a/b/memory.max", "max\n");
@@ -67,10 +65,9 @@ START_TEST(groups_of_version_2_are_climbed) {
   ck_assert_int_eq(l.cores, 1);
   folder_remove(root);
 }
-END_TEST
 
 /* In a container the path is that of the host, and only the root is seen. */
-START_TEST(groups_of_version_1_count_too) {
+TEST(groups_of_version_1_count_too) {
   begin();
   put("/proc/self/cgroup", "3:cpu,cpuacct:/docker/x\n2:memory:/docker/x\n");
   put("/sys/fs/cgroup/memory/memory.limit_in_bytes", "3000000\n");
@@ -86,10 +83,9 @@ START_TEST(groups_of_version_1_count_too) {
   ck_assert_int_ge(cores, 1);
   folder_remove(root);
 }
-END_TEST
 
 /* What the process holds already is no longer there. */
-START_TEST(limits_of_the_process_count) {
+TEST(limits_of_the_process_count) {
 #if defined(__SANITIZE_ADDRESS__)
   return; /* the sanitiser holds terabytes */
 #endif
@@ -109,10 +105,9 @@ START_TEST(limits_of_the_process_count) {
   ck_assert_double_gt(limits_held(), 1e5);
   folder_remove(root);
 }
-END_TEST
 
 /* "ulimit -d" counts no address space that a file or nothing fills. */
-START_TEST(limit_of_the_data_counts_data_alone) {
+TEST(limit_of_the_data_counts_data_alone) {
 #if defined(__SANITIZE_ADDRESS__)
   return; /* the sanitiser holds terabytes */
 #endif
@@ -135,8 +130,5 @@ START_TEST(limit_of_the_data_counts_data_alone) {
   ck_assert_str_eq(l.who, "ulimit -d");
   folder_remove(root);
 }
-END_TEST
 
-UNIT_MAIN("limits", machine_counts_what_is_available,
-          groups_of_version_2_are_climbed, groups_of_version_1_count_too,
-          limits_of_the_process_count, limit_of_the_data_counts_data_alone)
+UNIT_MAIN("limits")

@@ -2,7 +2,6 @@
  * src/output/listing: blocks of the listing of a made-up run in which no number
  * is there twice, as they are to be read.
  */
-#include "base/base.h"
 #include "output/listing/job.h"
 #include "output/writers.h"
 #include "support/folder.h"
@@ -16,7 +15,6 @@ static run_summary summary;
 static void must_print(status (*write)(const job *j, text_file *to),
                        const char *text) {
   static const output_options plain = {.no_timing = 1};
-  char dir[64], path[128];
   text_file to = {0};
   static effect_plan none;
   job j = {.m = &made->m,
@@ -24,15 +22,13 @@ static void must_print(status (*write)(const job *j, text_file *to),
            .o = &plain,
            .run = &summary,
            .plan = &none};
-  folder_new(dir);
-  snprintf(path, sizeof path, "%s/text", dir);
+  FOLDER(dir);
+  PRINTED(path, "%s/text", dir);
   ck_assert_int_eq(text_open(&to, path, 0), OK);
   ck_assert_int_eq(write(&j, &to), OK);
   ck_assert_int_eq(text_close(&to), OK);
-  char *told = folder_file(dir, "text", NULL);
+  FREED char *told = folder_file(dir, "text", NULL);
   ck_assert_msg(strstr(told, text) != NULL, "wanted\n%s\nin\n%s", text, told);
-  free(told);
-  folder_remove(dir);
 }
 
 /* ---- an increment -------------------------------------------------------- */
@@ -75,7 +71,7 @@ static state *make_increment(void) {
   "1.10E-011\n"
 /* clang-format on */
 
-START_TEST(errors_of_an_increment) {
+TEST(errors_of_an_increment) {
   goal_result goal = {6.0, -0.5, 0.01, 0.02, 0.03, 0.0, 0, 0, GOAL_RELIABLE};
   goal_card sink = {.name = "SINK", .quantity = GOAL_DISPLACEMENT};
   state *s = make_increment();
@@ -126,10 +122,9 @@ START_TEST(errors_of_an_increment) {
              "2.500000000E-001  attempt 2\n  cut: too long\n");
   made_up_free(made);
 }
-END_TEST
 
 /* Two solutions of an enumeration on two nodes, and attempts by solvers. */
-START_TEST(solutions_of_an_increment) {
+TEST(solutions_of_an_increment) {
   double u[] = {0.1, 0.2, 0.3, 0.4}, r[] = {0.5, 0.6, 0.7, 0.8};
   contact_status status_of[] = {CONTACT_SLIP, CONTACT_OPEN};
   solution found[2] = {
@@ -184,9 +179,8 @@ START_TEST(solutions_of_an_increment) {
              "3.0E-004\n");
   made_up_free(made);
 }
-END_TEST
 
-START_TEST(theorems_of_an_increment) {
+TEST(theorems_of_an_increment) {
   theorems_contact foot = {0, 0.1, 9.0, 0.2, 0.3, 0.4, 5.0, 6.0, MU_UNDER};
   state *s = make_increment();
   theorems_report *t = &s->errors.theorems;
@@ -234,7 +228,6 @@ START_TEST(theorems_of_an_increment) {
              "VIOLATED\n");
   made_up_free(made);
 }
-END_TEST
 
 /* ---- the start ----------------------------------------------------------- */
 
@@ -245,7 +238,7 @@ static status write_start(const job *j, text_file *to) {
 }
 
 /* The largest defects first, with the numbers of their nodes. */
-START_TEST(initial_state_has_its_worst_nodes) {
+TEST(initial_state_has_its_worst_nodes) {
   double defect[] = {0.0, 3.0, 1.0, 4.0};
   unsigned char kind[] = {0, 1, 2, 3};
   made = made_up_new(2, 1, 1);
@@ -273,7 +266,6 @@ START_TEST(initial_state_has_its_worst_nodes) {
              "  REFUSED\n");
   made_up_free(made);
 }
-END_TEST
 
 /* ---- model and equations ------------------------------------------------- */
 
@@ -281,7 +273,7 @@ static int group_named(const char *name) {
   return (int)(mesh_find_group(made->msh, name) - made->msh->group);
 }
 
-START_TEST(model_and_its_sizes) {
+TEST(model_and_its_sizes) {
   static const friction_ops coulomb = {.name = "COULOMB"},
                             bowl = {.name = "BOWL"};
   made = made_up_new(2, 1, 1);
@@ -331,9 +323,8 @@ START_TEST(model_and_its_sizes) {
              "RIGHT, friction none\n");
   made_up_free(made);
 }
-END_TEST
 
-START_TEST(equations_and_end) {
+TEST(equations_and_end) {
   made = made_up_new(2, 1, 1);
   summary = (run_summary){
       .facts_known = 1,
@@ -390,10 +381,9 @@ START_TEST(equations_and_end) {
              "  contact alone holds at least one body\n");
   made_up_free(made);
 }
-END_TEST
 
 /* What *EFFECTS, MODE=AUTO left out: each in another way. */
-START_TEST(effects_left_out) {
+TEST(effects_left_out) {
   made = made_up_new(2, 1, 1);
   model *m = &made->m;
   summary = (run_summary){.message = ""};
@@ -428,7 +418,6 @@ START_TEST(effects_left_out) {
              "with it: 3.0e-01 of the largest displacement or force\n");
   made_up_free(made);
 }
-END_TEST
 
 /* ---- accuracy of the run ------------------------------------------------- */
 
@@ -442,7 +431,7 @@ static status write_closing(const job *j, text_file *to) {
   return OK;
 }
 
-START_TEST(counts_of_the_run) {
+TEST(counts_of_the_run) {
   static increment_summary all[11];
   made = made_up_new(2, 1, 1);
   summary = (run_summary){.n_increment = 11,
@@ -464,9 +453,8 @@ START_TEST(counts_of_the_run) {
   must_print(write_closing, "; increments 0, attempts cut 12\n");
   made_up_free(made);
 }
-END_TEST
 
-START_TEST(budget_goals_and_passes) {
+TEST(budget_goals_and_passes) {
   static goal_card cards[2] = {
       {.name = "SINK",
        .quantity = GOAL_DISPLACEMENT,
@@ -571,9 +559,5 @@ START_TEST(budget_goals_and_passes) {
   must_print(write_accuracy, " % of PULL: missed\n");
   made_up_free(made);
 }
-END_TEST
 
-UNIT_MAIN("listing", errors_of_an_increment, solutions_of_an_increment,
-          theorems_of_an_increment, initial_state_has_its_worst_nodes,
-          model_and_its_sizes, equations_and_end, effects_left_out,
-          counts_of_the_run, budget_goals_and_passes)
+UNIT_MAIN("listing")

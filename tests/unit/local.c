@@ -5,11 +5,8 @@
  */
 #include "solver/local.h"
 
-#include "base/base.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
 
 static double centred(unsigned long long *seed) {
   return 2.0 * case_random(seed) - 1.0;
@@ -73,7 +70,7 @@ static void check(const local_problem *lp, local_state is, const double *d,
                   r[i], -g * x[i] / slip);
 }
 
-START_TEST(node_meets_its_conditions) {
+TEST(node_meets_its_conditions) {
   static const double far[] = {1.0, 1e-3, 10.0, 1e4, 1e8};
   unsigned long long seed = 3;
   int found[3] = {0};
@@ -86,10 +83,9 @@ START_TEST(node_meets_its_conditions) {
   }
   for (int i = 0; i < 3; ++i) ck_assert_int_gt(found[i], 100);
 }
-END_TEST
 
 /* Without friction; each obstacle may be out of reach. */
-START_TEST(node_at_several_obstacles_meets_its_conditions) {
+TEST(node_at_several_obstacles_meets_its_conditions) {
   unsigned long long seed = 5;
   int closed[8] = {0};
   for (int k = 0; k < 2000; ++k) {
@@ -115,7 +111,6 @@ START_TEST(node_at_several_obstacles_meets_its_conditions) {
   }
   for (int i = 0; i < 8; ++i) ck_assert_int_gt(closed[i], 20);
 }
-END_TEST
 
 /* Two nodes that springs of 1 N/m along both axes join, without a support. */
 static contact_case pair_of_nodes(double mu) {
@@ -131,10 +126,10 @@ static contact_case pair_of_nodes(double mu) {
 
 /* Sweeps that gave up: the load carries the pair to the obstacle, along it or
  * away from it. */
-START_TEST(body_before_an_obstacle_does_not_drift_off) {
+TEST(body_before_an_obstacle_does_not_drift_off) {
   static const double load[3][2] = {{1, 0.1}, {0, 1}, {-1, 0.1}};
   for (int k = 0; k < 3; ++k) {
-    contact_case c = pair_of_nodes(0.0);
+    CONTACT_CASE c = pair_of_nodes(0.0);
     const best_iterate none = {.residual = HUGE_VAL};
     solver_report rep = {.outcome = STOPPED_STAGNATION};
     node_blocks *blocks;
@@ -148,10 +143,8 @@ START_TEST(body_before_an_obstacle_does_not_drift_off) {
     relaxation_end(&s, &none, work, &rep);
     ck_assert_int_eq(rep.outcome, k == 0 ? STOPPED_STAGNATION : STOPPED_RAY);
     memory_free(blocks);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A step of the pair in the plane of the motion, its gaps and stick positions;
  * steps to the nearest, 0: none. */
@@ -164,9 +157,9 @@ static const struct {
                {{1, 2}, {9, 3}, {16, 40}, 3}};
 
 /* Straight on to the first obstacle or the first position of stick ahead. */
-START_TEST(body_flies_to_what_is_next) {
+TEST(body_flies_to_what_is_next) {
   for (size_t k = 0; k < sizeof flights / sizeof *flights; ++k) {
-    contact_case c = pair_of_nodes(1.0);
+    CONTACT_CASE c = pair_of_nodes(1.0);
     const double *d = flights[k].d;
     const int steps = flights[k].steps;
     const double from[] = {2 - d[0], 2 - d[1], 2 - d[0], 2 - d[1]};
@@ -184,12 +177,7 @@ START_TEST(body_flies_to_what_is_next) {
     ck_assert_int_eq(relaxation_fly(&s, from), steps > 0 ? 2 : 0);
     for (int i = 0; i < 4; ++i) ck_assert(c.u[i] == 2 + steps * d[i % 2]);
     memory_free(blocks);
-    case_free(&c);
   }
 }
-END_TEST
 
-UNIT_MAIN("local", node_meets_its_conditions,
-          node_at_several_obstacles_meets_its_conditions,
-          body_before_an_obstacle_does_not_drift_off,
-          body_flies_to_what_is_next)
+UNIT_MAIN("local")

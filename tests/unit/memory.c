@@ -1,13 +1,11 @@
 /* src/base/memory.c, status.c, timer.c */
-#include "base/base.h"
 #include "support/unit.h"
 
 #include <SuiteSparse_config.h>
-#include <stdint.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-START_TEST(bytes_in_use_return_to_the_start) {
+TEST(bytes_in_use_return_to_the_start) {
   size_t before = memory_in_use();
   double *a = memory_new(100, sizeof *a);
   ck_assert_ptr_nonnull(a);
@@ -17,10 +15,9 @@ START_TEST(bytes_in_use_return_to_the_start) {
   memory_free(NULL);
   ck_assert_uint_eq(memory_in_use(), before);
 }
-END_TEST
 
 /* Sparse factors count and can be refused like any other block. */
-START_TEST(blocks_of_suitesparse_are_counted) {
+TEST(blocks_of_suitesparse_are_counted) {
   size_t before = memory_in_use();
   int moved;
   memory_count_suitesparse();
@@ -35,7 +32,6 @@ START_TEST(blocks_of_suitesparse_are_counted) {
   SuiteSparse_free(a);
   ck_assert_uint_eq(memory_in_use(), before);
 }
-END_TEST
 
 /* The signal that ends a process in which a[n] is written. */
 static int signal_behind(double *a, size_t n) {
@@ -55,7 +51,7 @@ static int signal_behind(double *a, size_t n) {
 /* In the tests: what lies behind a block is no number, and stays as it is; once
  * it is known who makes the blocks of src, it cannot be touched
  * (tests/preload/guard.c). */
-START_TEST(blocks_are_guarded) {
+TEST(blocks_are_guarded) {
   const char *loaded = getenv("LD_PRELOAD");
   volatile size_t n = 3;
   if (loaded == NULL || strstr(loaded, "mesh.so") == NULL) return;
@@ -66,14 +62,12 @@ START_TEST(blocks_are_guarded) {
     ck_assert_int_eq(signal_behind(a, n), k == 0 ? SIGABRT : SIGSEGV);
   }
 }
-END_TEST
 
-START_TEST(overflowing_request_is_refused) {
+TEST(overflowing_request_is_refused) {
   ck_assert_ptr_null(memory_new((size_t)-1 / 4, 8));
 }
-END_TEST
 
-START_TEST(kth_request_is_refused_once_or_for_good) {
+TEST(kth_request_is_refused_once_or_for_good) {
   memory_refuse(2, 0);
   void *a = memory_new(1, 1), *b = memory_new(1, 1), *c = memory_new(1, 1);
   ck_assert(a != NULL && b == NULL && c != NULL);
@@ -84,24 +78,21 @@ START_TEST(kth_request_is_refused_once_or_for_good) {
   memory_free(a);
   memory_free(c);
 }
-END_TEST
 
 /* What is above the limit is refused, and can be asked before. */
-START_TEST(limit_is_kept_and_expected) {
+TEST(limit_is_kept_and_expected) {
   memory_limit(memory_in_use() + 1000, "a test");
   ck_assert_double_eq(memory_left(), 1000.0);
   ck_assert_ptr_null(memory_new(1001, 1));
-  void *a = memory_new(600, 1);
+  OWNED void *a = memory_new(600, 1);
   ck_assert_ptr_nonnull(a);
   ck_assert_ptr_null(memory_new(401, 1));
   ck_assert_int_eq(memory_require(400.0, "a run"), OK);
   ck_assert_int_eq(memory_require(401.0, "a run"), ERR_MEMORY);
   ck_assert_ptr_nonnull(strstr(status_message(), "a test leaves"));
-  memory_free(a);
   memory_limit(SIZE_MAX, "nothing");
   ck_assert_int_eq(memory_require(1e300, "a run"), OK);
 }
-END_TEST
 
 static status fails_inside(void) {
   status st = OK;
@@ -117,7 +108,7 @@ done:
   return st;
 }
 
-START_TEST(failure_keeps_message_and_path) {
+TEST(failure_keeps_message_and_path) {
   ck_assert_int_eq(passes_up(), ERR_MESH);
   ck_assert_str_eq(status_message(), "element 7");
   ck_assert_ptr_nonnull(strstr(status_path(), "fails_inside"));
@@ -125,27 +116,19 @@ START_TEST(failure_keeps_message_and_path) {
   ck_assert_int_eq(status_exit_code(ERR_MESH), 3);
   ck_assert_str_eq(status_name(ERR_MESH), "ERR_MESH");
 }
-END_TEST
 
-START_TEST(stage_is_charged_for_itself_only) {
+TEST(stage_is_charged_for_itself_only) {
   timer_reset();
   timer_enter(STAGE_LOAD);
-  void *outer = memory_new(1000, 1);
+  OWNED void *outer = memory_new(1000, 1);
   timer_enter(STAGE_STRESS);
-  void *inner = memory_new(50, 1);
+  OWNED void *inner = memory_new(50, 1);
   timer_leave(STAGE_STRESS);
   timer_leave(STAGE_LOAD);
   ck_assert_int_eq(timer_cost(STAGE_LOAD).calls, 1);
   ck_assert_uint_eq(timer_cost(STAGE_LOAD).bytes, 1000);
   ck_assert_uint_eq(timer_cost(STAGE_STRESS).bytes, 50);
   ck_assert_int_eq(timer_cost(STAGE_MESH).calls, 0);
-  memory_free(outer);
-  memory_free(inner);
 }
-END_TEST
 
-UNIT_MAIN("memory", bytes_in_use_return_to_the_start,
-          blocks_of_suitesparse_are_counted, overflowing_request_is_refused,
-          blocks_are_guarded, limit_is_kept_and_expected,
-          kth_request_is_refused_once_or_for_good,
-          failure_keeps_message_and_path, stage_is_charged_for_itself_only)
+UNIT_MAIN("memory")

@@ -1,5 +1,4 @@
 /* src/mesh: what is read, in every format, and its geometry */
-#include "base/base.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
@@ -117,10 +116,10 @@ static void check_order(const mesh *m) {
 /* Once for all tests, which are processes of their own. */
 __attribute__((constructor)) static void load(void) { mesh_gmsh_load(); }
 
-START_TEST(disc_in_frame_has_its_areas_normals_and_groups) {
-  mesh_file f;
+TEST(disc_in_frame_has_its_areas_normals_and_groups) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *m = mesh_file_text(&f, "disc.geo", disc_geo);
+  OWNED mesh *m = mesh_file_text(&f, "disc.geo", disc_geo);
   ck_assert_msg(f.answer == OK && f.messages[0] == '\0', "%s", f.messages);
   ck_assert_int_eq(m->dim, 2);
   ck_assert_int_eq(m->n_group, 5);
@@ -145,15 +144,12 @@ START_TEST(disc_in_frame_has_its_areas_normals_and_groups) {
   check_closed(m, 1, (const char *[]){"12"}, 16.0);
   check_outward(m);
   check_order(m);
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
-START_TEST(cubes_have_their_volumes_normals_and_groups) {
-  mesh_file f;
+TEST(cubes_have_their_volumes_normals_and_groups) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *m = mesh_file_text(&f, "cubes.geo", cubes_geo);
+  OWNED mesh *m = mesh_file_text(&f, "cubes.geo", cubes_geo);
   ck_assert_msg(f.answer == OK && f.messages[0] == '\0', "%s", f.messages);
   ck_assert_int_eq(m->dim, 3);
   ck_assert_double_eq_tol(group_measure(m, "LOW"), 1.0, 1e-13);
@@ -179,17 +175,14 @@ START_TEST(cubes_have_their_volumes_normals_and_groups) {
   check_closed(m, 3, (const char *[]){"FOOT", "HEAD", "SIDES"}, 2.0);
   check_outward(m);
   check_order(m);
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* gmsh itself writes the other formats, from the very mesh it made. */
 static void check_formats(const char *geo) {
   static const char *const name[] = {"a22.msh", "b22.msh", "a41.msh",
                                      "b41.msh"};
   static char text[8192];
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   int n = snprintf(text, sizeof text, "%s\nMesh %d;\n", geo,
                    strstr(geo, "Volume") != NULL ? 3 : 2);
@@ -198,53 +191,42 @@ static void check_formats(const char *geo) {
                   "Mesh.MshFileVersion = %s; Mesh.Binary = %d;\n"
                   "Save \"%s/%s\";\n",
                   i < 2 ? "2.2" : "4.1", i % 2, f.folder, name[i]);
-  mesh *direct = mesh_file_text(&f, "direct.geo", text);
-  mesh *plain = mesh_file_text(&f, "plain.geo", geo);
+  OWNED mesh *direct = mesh_file_text(&f, "direct.geo", text);
+  OWNED mesh *plain = mesh_file_text(&f, "plain.geo", geo);
   ck_assert_msg(direct != NULL && plain != NULL, "%s", f.messages);
   const char *what;
   ck_assert_msg(mesh_same(direct, plain, 0.0, &what), "meshed by us: %s", what);
   for (int i = 0; i < 4; ++i) {
-    mesh *m = mesh_file_read(&f, name[i], 1.0, 0, NULL);
+    OWNED mesh *m = mesh_file_read(&f, name[i], 1.0, 0, NULL);
     ck_assert_msg(m != NULL, "%s: %s", name[i], f.messages);
     ck_assert_msg(mesh_same(direct, m, i % 2 ? 0.0 : 1e-15, &what), "%s: %s",
                   name[i], what);
-    memory_free(m);
   }
-  memory_free(direct);
-  memory_free(plain);
-  mesh_file_close(&f);
 }
 
-START_TEST(all_formats_give_the_same_mesh_2d) { check_formats(disc_geo); }
-END_TEST
+TEST(all_formats_give_the_same_mesh_2d) { check_formats(disc_geo); }
 
-START_TEST(all_formats_give_the_same_mesh_3d) { check_formats(cubes_geo); }
-END_TEST
+TEST(all_formats_give_the_same_mesh_3d) { check_formats(cubes_geo); }
 
-START_TEST(meshing_twice_gives_the_same_bytes) {
-  mesh_file f;
+TEST(meshing_twice_gives_the_same_bytes) {
+  MESH_FILE f;
   mesh_file_open(&f);
   const mesh_number n = {"N", 7.0, 0};
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
-  mesh *a = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
-  mesh *b = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
-  mesh *coarse = mesh_file_read(&f, "d.geo", 1.0, 0, NULL);
+  OWNED mesh *a = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
+  OWNED mesh *b = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
+  OWNED mesh *coarse = mesh_file_read(&f, "d.geo", 1.0, 0, NULL);
   const char *what;
   ck_assert_msg(mesh_same(a, b, 0.0, &what), "%s", what);
   ck_assert_mem_eq(a->elem_no, b->elem_no,
                    (size_t)a->n_elem * sizeof *a->elem_no);
   ck_assert_int_gt(a->n_node, coarse->n_node);
-  memory_free(a);
-  memory_free(b);
-  memory_free(coarse);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Numbers of the deck: by name, to full precision, also if the .geo gives the
  * constant a label; other names are of no effect. */
-START_TEST(numbers_reach_the_geometry) {
-  mesh_file f;
+TEST(numbers_reach_the_geometry) {
+  MESH_FILE f;
   mesh_file_open(&f);
   static const char geo[] =
       "DefineConstant[ W = {1, Name \"Shape/W\"}, H = 1 ];\n"
@@ -255,30 +237,27 @@ START_TEST(numbers_reach_the_geometry) {
   const mesh_number n[] = {
       {"W", 1.0 / 3.0, 0}, {"UNUSED", 9.0, 0}, {"H", 2e-5, 0}};
   mesh_file_write(&f, "r.geo", geo, sizeof geo - 1);
-  mesh *m = mesh_file_read(&f, "r.geo", 1.0, 3, n);
+  OWNED mesh *m = mesh_file_read(&f, "r.geo", 1.0, 3, n);
   ck_assert_msg(m != NULL, "%s", f.messages);
   double top[2] = {0.0, 0.0};
   for (int i = 0; i < m->n_node; ++i)
     for (int k = 0; k < 2; ++k) top[k] = fmax(top[k], m->x[2 * i + k]);
   ck_assert(top[0] == 1.0 / 3.0 && top[1] == 2e-5);
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Sizes 0.05 in the quarter x, y < 0, 0.5 elsewhere, lengths scaled by 10. */
-START_TEST(sizes_reach_the_geometry) {
-  mesh_file f;
+TEST(sizes_reach_the_geometry) {
+  MESH_FILE f;
   mesh_file_open(&f);
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
-  mesh *old = mesh_file_read(&f, "d.geo", 10.0, 0, NULL);
+  OWNED mesh *old = mesh_file_read(&f, "d.geo", 10.0, 0, NULL);
   ck_assert_msg(old != NULL, "%s", f.messages);
   double *size = calloc((size_t)old->n_node, sizeof *size), area[2] = {0, 0};
   for (int i = 0; i < old->n_node; ++i)
     size[i] = old->x[2 * i] < 0 && old->x[2 * i + 1] < 0 ? 0.5 : 5;
   const mesh_source source = {
       .file = mesh_file_path(&f, "d.geo"), .scale = 10, .sizes = {{old, size}}};
-  mesh *m = mesh_file_from(&f, &source);
+  OWNED mesh *m = mesh_file_from(&f, &source);
   ck_assert_msg(m != NULL, "%s", f.messages);
   int n[2] = {0, 0};
   for (int e = 0; e < m->n_elem; ++e) {
@@ -300,32 +279,24 @@ START_TEST(sizes_reach_the_geometry) {
   }
   ck_assert_int_eq(m->n_group, old->n_group);
   free(size);
-  memory_free(old);
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
-START_TEST(scale_by_a_power_of_two_changes_no_digit) {
-  mesh_file f;
+TEST(scale_by_a_power_of_two_changes_no_digit) {
+  MESH_FILE f;
   mesh_file_open(&f);
   mesh_file_write(&f, "c.geo", cubes_geo, strlen(cubes_geo));
-  mesh *a = mesh_file_read(&f, "c.geo", 1.0, 0, NULL);
+  OWNED mesh *a = mesh_file_read(&f, "c.geo", 1.0, 0, NULL);
   for (int power = -300; power <= 300; power += 150) {
     double scale = ldexp(1.0, power);
-    mesh *b = mesh_file_read(&f, "c.geo", scale, 0, NULL);
+    OWNED mesh *b = mesh_file_read(&f, "c.geo", scale, 0, NULL);
     ck_assert_msg(b != NULL, "2^%d: %s", power, f.messages);
     for (int i = 0; i < 3 * a->n_node; ++i)
       ck_assert(b->x[i] == a->x[i] * scale);
     ck_assert_mem_eq(a->elem, b->elem, 4 * (size_t)a->n_elem * sizeof(int));
     ck_assert_mem_eq(a->face, b->face, 3 * (size_t)a->n_face * sizeof(int));
     ck_assert(b->size == a->size * scale);
-    memory_free(b);
   }
-  memory_free(a);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* 20 x 20 cells of a square; node (i, j) has number renumber(...), elements
  * are listed and turned as pass says. */
@@ -356,47 +327,39 @@ static char *square_text(int pass) {
   return text;
 }
 
-START_TEST(order_does_not_depend_on_the_numbers_of_the_file) {
-  mesh_file f;
+TEST(order_does_not_depend_on_the_numbers_of_the_file) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *a = mesh_file_text(&f, "a.msh", square_text(0));
-  mesh *b = mesh_file_text(&f, "b.msh", square_text(1));
+  OWNED mesh *a = mesh_file_text(&f, "a.msh", square_text(0));
+  OWNED mesh *b = mesh_file_text(&f, "b.msh", square_text(1));
   ck_assert_msg(a != NULL && b != NULL, "%s", f.messages);
   ck_assert_int_eq(a->n_node, 441);
   ck_assert_mem_eq(a->x, b->x, 2 * 441 * sizeof(double));
   ck_assert_mem_eq(a->elem, b->elem, 3 * (size_t)a->n_elem * sizeof(int));
   ck_assert(memcmp(a->node_no, b->node_no, 441 * sizeof(size_t)) != 0);
-  memory_free(a);
-  memory_free(b);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Two nodes so close that they share a cell of the curve. */
-START_TEST(order_of_close_nodes_is_that_of_their_coordinates) {
-  mesh_file f;
+TEST(order_of_close_nodes_is_that_of_their_coordinates) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *a = mesh_file_text(
+  OWNED mesh *a = mesh_file_text(
       &f, "a.msh",
       MSH("1\n2 1 \"B\"\n", "4\n1 0 0 0\n2 1e-8 0 0\n3 1 0 0\n4 0 1 0\n",
           "2\n1 2 2 1 1 1 2 4\n2 2 2 1 1 2 3 4\n"));
-  mesh *b = mesh_file_text(
+  OWNED mesh *b = mesh_file_text(
       &f, "b.msh",
       MSH("1\n2 1 \"B\"\n", "4\n1 1e-8 0 0\n2 0 0 0\n3 1 0 0\n4 0 1 0\n",
           "2\n1 2 2 1 1 2 1 4\n2 2 2 1 1 1 3 4\n"));
   ck_assert_msg(a != NULL && b != NULL, "%s", f.messages);
   ck_assert_mem_eq(a->x, b->x, 8 * sizeof(double));
   ck_assert_mem_eq(a->elem, b->elem, 6 * sizeof(int));
-  memory_free(a);
-  memory_free(b);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* gmsh leaves flat triangles between the nodes of a straight line, some on each
  * other: the triangle beyond them is cut instead. */
-START_TEST(flat_triangles_on_a_line_are_cut) {
-  mesh_file f;
+TEST(flat_triangles_on_a_line_are_cut) {
+  MESH_FILE f;
   mesh_file_open(&f);
   mesh *m = mesh_file_text(
       &f, "a.msh",
@@ -422,18 +385,16 @@ START_TEST(flat_triangles_on_a_line_are_cut) {
           "4 2 2 2 2 1 3 4\n"));
   ck_assert(m == NULL);
   ck_assert_ptr_nonnull(strstr(f.messages, "P3022"));
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Neighbours along the curve are near: the mean jump between elements that
  * follow each other is a few nodes, against some 100 row by row. */
-START_TEST(neighbours_are_close_in_memory) {
-  mesh_file f;
+TEST(neighbours_are_close_in_memory) {
+  MESH_FILE f;
   mesh_file_open(&f);
   const mesh_number n = {"N", 30.0, 0};
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
-  mesh *m = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
+  OWNED mesh *m = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
   double jump = 0.0;
   for (int e = 0; e < m->n_elem; ++e) {
     const int *v = m->elem + 3 * e;
@@ -444,15 +405,12 @@ START_TEST(neighbours_are_close_in_memory) {
   }
   ck_assert_int_gt(m->n_node, 2000);
   ck_assert_double_lt(jump / m->n_elem, 0.06 * m->n_node);
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
-START_TEST(bodies_are_the_connected_parts) {
-  mesh_file f;
+TEST(bodies_are_the_connected_parts) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *m = mesh_file_text(
+  OWNED mesh *m = mesh_file_text(
       &f, "two.msh",
       MSH("1\n2 1 \"B\"\n",
           "8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 3 0 0\n6 4 0 0\n7 3 1 0\n"
@@ -470,25 +428,19 @@ START_TEST(bodies_are_the_connected_parts) {
       ck_assert_int_eq(body[e] == body[o], left == other);
     }
   }
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
-START_TEST(groups_are_found_by_name_and_the_nearest_is_offered) {
-  mesh_file f;
+TEST(groups_are_found_by_name_and_the_nearest_is_offered) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *m = mesh_file_text(&f, "disc.geo", disc_geo);
+  OWNED mesh *m = mesh_file_text(&f, "disc.geo", disc_geo);
   ck_assert_ptr_null(mesh_find_group(m, "FRAMES"));
   ck_assert_ptr_null(mesh_find_group(m, "rim"));
   ck_assert_str_eq(mesh_nearest_group(m, "FRAMES"), "FRAME");
   ck_assert_str_eq(mesh_nearest_group(m, "CENTER"), "CENTRE");
   ck_assert_ptr_null(mesh_nearest_group(m, "QUITE_DIFFERENT"));
-  memory_free(m);
   memory_free(NULL);
-  mesh_file_close(&f);
 }
-END_TEST
 
 static const char small_msh[] =
     MSH("3\n0 5 \"P\"\n1 1 \"F\"\n2 2 \"B\"\n",
@@ -497,36 +449,23 @@ static const char small_msh[] =
         "4 1 2 1 1 2 1\n5 15 2 5 1 4\n");
 
 /* Parent and child go on counting: each request is refused on one side. */
-START_TEST(reader_gives_back_all_when_refused) {
+TEST(reader_gives_back_all_when_refused) {
   static const char merge[] = "Merge \"m.msh\";\n";
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
   mesh_file_write(&f, "m.geo", merge, sizeof merge - 1);
   const mesh_source source = {.file = mesh_file_path(&f, "m.geo"), .scale = 1};
   const raw_request request = {&source, 0};
-  size_t before = memory_in_use();
-  int k = 1;
-  for (;; ++k) {
-    raw_mesh *raw;
-    memory_refuse(k, 0);
-    status st = raw_read(&request, &raw);
-    memory_refuse(0, 0);
-    memory_free(raw);
-    ck_assert_uint_eq(memory_in_use(), before);
-    if (st == OK) break;
-    ck_assert_int_eq(st, ERR_MEMORY);
-  }
-  ck_assert_int_gt(k, 15);
-  mesh_file_close(&f);
+  raw_mesh *raw;
+  UNIT_REFUSED(15, raw_read(&request, &raw), memory_free(raw));
 }
-END_TEST
 
-START_TEST(builder_gives_back_all_when_refused) {
-  mesh_file f;
+TEST(builder_gives_back_all_when_refused) {
+  MESH_FILE f;
   mesh_file_open(&f);
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
-  raw_mesh *raw;
+  OWNED raw_mesh *raw = NULL;
   ck_assert_int_eq(msh_read(mesh_file_path(&f, "m.msh"), &raw), OK);
   long first = memory_requests(), n = 0;
   for (long k = 0; k <= 2 * n; ++k) { /* 0: none; then each, once or for good */
@@ -546,15 +485,12 @@ START_TEST(builder_gives_back_all_when_refused) {
     ck_assert_uint_eq(memory_in_use(), before);
   }
   ck_assert_int_gt(n, 20);
-  memory_free(raw);
-  mesh_file_close(&f);
 }
-END_TEST
 
-START_TEST(bodies_give_back_all_when_refused) {
-  mesh_file f;
+TEST(bodies_give_back_all_when_refused) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *m = mesh_file_text(&f, "m.msh", small_msh);
+  OWNED mesh *m = mesh_file_text(&f, "m.msh", small_msh);
   ck_assert_ptr_nonnull(m);
   size_t before = memory_in_use();
   int n_body, body[2];
@@ -564,10 +500,7 @@ START_TEST(bodies_give_back_all_when_refused) {
     ck_assert_uint_eq(memory_in_use(), before);
   }
   memory_refuse(0, 0);
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Means of phi_0^a phi_1^b: a! b!/(a + b + 1)! on a segment, twice a! b!/(a + b
  * + 2)! on a triangle. */

@@ -1,5 +1,4 @@
 /* src/mesh: what is wrong with a mesh or its file, and how it is told */
-#include "base/base.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
@@ -241,9 +240,9 @@ static void check_message(mesh_file *f, const bad_mesh *c) {
                 c->name, wanted, f->messages);
 }
 
-START_TEST(every_error_has_its_text_and_no_mesh) {
+TEST(every_error_has_its_text_and_no_mesh) {
   mesh_gmsh_load();
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   size_t before = memory_in_use();
   int descriptors = count_descriptors();
@@ -257,28 +256,23 @@ START_TEST(every_error_has_its_text_and_no_mesh) {
     ck_assert_int_eq(count_descriptors(), descriptors);
     ck_assert(waitpid(-1, NULL, WNOHANG) == -1 && errno == ECHILD);
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
-START_TEST(every_remark_has_its_text_and_a_mesh) {
+TEST(every_remark_has_its_text_and_a_mesh) {
   mesh_gmsh_load();
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   for (size_t i = 0; i < sizeof remarks / sizeof *remarks; ++i) {
-    mesh *m = mesh_file_text(&f, remarks[i].name, remarks[i].text);
+    OWNED mesh *m = mesh_file_text(&f, remarks[i].name, remarks[i].text);
     check_message(&f, &remarks[i]);
     ck_assert_msg(m != NULL && f.n_error == 0, "%s", f.messages);
-    memory_free(m);
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* A sliver of aspect 1e4 is computed with in any unit, off the origin too;
  * one that is flat to rounding, of its edges or of its coordinates (1.2e-10
  * is the last bit of 1e6), is refused in any unit. */
-START_TEST(flatness_has_no_unit) {
+TEST(flatness_has_no_unit) {
   static const struct {
     double y, height;
     int good;
@@ -287,58 +281,50 @@ START_TEST(flatness_has_no_unit) {
                {1e6, 1e-4, 1},
                {1e6, 1.2e-10, 0},
                {-1e6, 1.2e-10, 0}};
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   for (int power = -40; power <= 40; power += 40)
     for (int k = 0; k < 5; ++k) {
-      char text[1024];
       double unit =
           power < 0 ? 1.0 / (double)(1L << -power) : (double)(1L << power);
       double y = cases[k].y * unit, top = (cases[k].y + cases[k].height) * unit;
       ck_assert(top > y);
-      snprintf(
-          text, sizeof text,
+      PRINTED(
+          text,
           MSH(BODY, "3\n1 %.17g %.17g 0\n2 %.17g %.17g 0\n3 %.17g %.17g 0\n",
               "1\n1 2 2 1 1 1 2 3\n"),
           100 * unit, y, 101 * unit, y, 100.5 * unit, top);
-      mesh *m = mesh_file_text(&f, "s.msh", text);
+      OWNED mesh *m = mesh_file_text(&f, "s.msh", text);
       ck_assert_msg((m != NULL) == cases[k].good, "2^%d, case %d: %s", power, k,
                     f.messages);
       ck_assert((strstr(f.messages, "P3022") == NULL) == cases[k].good);
-      memory_free(m);
     }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* A triangle on the line y = 0, the other below it but for a part of its width:
  * coordinates of few digits touch, more is an overlap. */
-START_TEST(bodies_that_hardly_enter_each_other_touch) {
+TEST(bodies_that_hardly_enter_each_other_touch) {
   static const double part[] = {0, 1e-9, 5e-7, 1e-5, 1e-3};
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   for (int k = 0; k < 5; ++k) {
-    char text[1024];
-    snprintf(text, sizeof text,
-             MSH(BODY,
-                 "6\n1 0 0 0\n2 1 0 0\n3 0.5 1 0\n"
-                 "4 0.1 %.17g 0\n5 0.5 -1 0\n6 0.9 %.17g 0\n",
-                 "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
-             part[k], part[k]);
-    mesh *m = mesh_file_text(&f, "t.msh", text);
+    PRINTED(text,
+            MSH(BODY,
+                "6\n1 0 0 0\n2 1 0 0\n3 0.5 1 0\n"
+                "4 0.1 %.17g 0\n5 0.5 -1 0\n6 0.9 %.17g 0\n",
+                "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
+            part[k], part[k]);
+    OWNED mesh *m = mesh_file_text(&f, "t.msh", text);
     const int told = strstr(f.messages, "overlap") != NULL;
     ck_assert_msg(told == (k > 2), "%g: %s", part[k], f.messages);
-    memory_free(m);
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* A triangle in an element of a square that has no side on its boundary. */
-START_TEST(body_inside_of_another_is_seen) {
-  mesh_file f;
+TEST(body_inside_of_another_is_seen) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *m = mesh_file_text(
+  OWNED mesh *m = mesh_file_text(
       &f, "t.msh",
       MSH(BODY,
           "11\n1 0 0 0\n2 3 0 0\n3 3 3 0\n4 0 3 0\n5 1 1 0\n6 2 1 0\n"
@@ -348,39 +334,32 @@ START_TEST(body_inside_of_another_is_seen) {
           "7 2 2 1 1 4 1 5\n8 2 2 1 1 4 5 8\n9 2 2 1 1 5 6 7\n"
           "10 2 2 1 1 5 7 8\n11 2 2 1 1 9 10 11\n"));
   ck_assert_ptr_nonnull(strstr(f.messages, "overlap"));
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Two slivers along a slanted line far from the origin, on both sides of it,
  * without common nodes. */
-START_TEST(bodies_that_touch_do_not_overlap) {
-  mesh_file f;
+TEST(bodies_that_touch_do_not_overlap) {
+  MESH_FILE f;
   mesh_file_open(&f);
   for (int k = 0; k < 24; ++k) {
-    char text[1024];
     double a = 0.1 + k, c = cos(a), s = sin(a), far = k % 2 ? 1e6 : 0.0;
     double h = k % 2 ? 1e-3 : 1e-6;
-    snprintf(text, sizeof text,
-             MSH(BODY,
-                 "6\n1 %.17g %.17g 0\n2 %.17g %.17g 0\n3 %.17g %.17g 0\n"
-                 "4 %.17g %.17g 0\n5 %.17g %.17g 0\n6 %.17g %.17g 0\n",
-                 "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
-             far, far, far + c, far + s, far - h * s, far + h * c,
-             far + 0.3 * c, far + 0.3 * s, far + 0.8 * c, far + 0.8 * s,
-             far + h * s, far - h * c);
-    mesh *m = mesh_file_text(&f, "t.msh", text);
+    PRINTED(text,
+            MSH(BODY,
+                "6\n1 %.17g %.17g 0\n2 %.17g %.17g 0\n3 %.17g %.17g 0\n"
+                "4 %.17g %.17g 0\n5 %.17g %.17g 0\n6 %.17g %.17g 0\n",
+                "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 4 5 6\n"),
+            far, far, far + c, far + s, far - h * s, far + h * c, far + 0.3 * c,
+            far + 0.3 * s, far + 0.8 * c, far + 0.8 * s, far + h * s,
+            far - h * c);
+    OWNED mesh *m = mesh_file_text(&f, "t.msh", text);
     ck_assert_msg(m != NULL && strstr(f.messages, "P3034") == NULL, "%d: %s", k,
                   f.messages);
-    memory_free(m);
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
-START_TEST(files_that_cannot_be_read_are_told) {
-  mesh_file f;
+TEST(files_that_cannot_be_read_are_told) {
+  MESH_FILE f;
   mesh_file_open(&f);
   mesh_file_read(&f, "missing.msh", 1.0, 0, NULL);
   ck_assert_int_eq(f.answer, ERR_FILE);
@@ -400,12 +379,10 @@ START_TEST(files_that_cannot_be_read_are_told) {
     ck_assert_int_eq(f.answer, ERR_FILE);
     ck_assert_ptr_nonnull(strstr(f.messages, "Permission denied"));
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* What gmsh itself would not let through: the builder checks it again. */
-START_TEST(builder_trusts_nothing) {
+TEST(builder_trusts_nothing) {
   size_t node_no[3] = {1, 2, 3}, elem_no = 7, node[3] = {1, 2, 99};
   double xyz[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   char name[] = "BODY", type[] = "Triangle 3";
@@ -420,7 +397,7 @@ START_TEST(builder_trusts_nothing) {
                   .block = &block,
                   .group = &group};
   for (int i = 0; i < 2; ++i) {
-    message_log *log;
+    OWNED message_log *log = NULL;
     mesh *m;
     char text[256] = "";
     if (i == 1) block.n = (size_t)1 << 40;
@@ -437,13 +414,7 @@ START_TEST(builder_trusts_nothing) {
                          "faces",
                 40) == 0,
         "%s", text);
-    memory_free(log);
   }
 }
-END_TEST
 
-UNIT_MAIN("mesh_errors", every_error_has_its_text_and_no_mesh,
-          every_remark_has_its_text_and_a_mesh, flatness_has_no_unit,
-          bodies_that_hardly_enter_each_other_touch,
-          body_inside_of_another_is_seen, bodies_that_touch_do_not_overlap,
-          files_that_cannot_be_read_are_told, builder_trusts_nothing)
+UNIT_MAIN("mesh_errors")

@@ -1,6 +1,5 @@
 /* src/mesh/child.c, raw.c: the process in which gmsh reads and meshes: how it
  * ends, what it leaves, what it must not do. */
-#include "base/base.h"
 #include "mesh/msh/geo.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
@@ -19,8 +18,8 @@ static const char good_msh[] = MSH(BODY, SQUARE, "2\n" TWO);
 /* Once for all tests, which are processes of their own. */
 __attribute__((constructor)) static void load(void) { mesh_gmsh_load(); }
 
-START_TEST(good_file_is_read_after_bad_ones) {
-  mesh_file f;
+TEST(good_file_is_read_after_bad_ones) {
+  MESH_FILE f;
   mesh_file_open(&f);
   static const char *const bad[] = {
       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\nrubbish\n$EndNodes\n",
@@ -28,16 +27,13 @@ START_TEST(good_file_is_read_after_bad_ones) {
   for (int i = 0; i < 2; ++i) {
     ck_assert_ptr_null(mesh_file_text(&f, "bad.msh", bad[i]));
     ck_assert_int_eq(f.answer, ERR_MESH);
-    mesh *m = mesh_file_text(&f, "good.msh", good_msh);
+    OWNED mesh *m = mesh_file_text(&f, "good.msh", good_msh);
     ck_assert_msg(m != NULL && m->n_elem == 2, "%s", f.messages);
-    memory_free(m);
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* SystemCall runs a shell below gmsh: its parent is the reader. */
-START_TEST(reader_that_dies_is_told) {
+TEST(reader_that_dies_is_told) {
   static const struct {
     const char *geo, *text;
     status answer;
@@ -53,7 +49,7 @@ START_TEST(reader_that_dies_is_told) {
        "Physical Surface(1)={1};\n",
        "gmsh", ERR_MESH},
   };
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     ck_assert_ptr_null(mesh_file_text(&f, "dies.geo", cases[i].geo));
@@ -72,9 +68,7 @@ START_TEST(reader_that_dies_is_told) {
       "SystemCall \"echo out of dynamic memory in a buffer >&2\"; Exit;\n"));
   ck_assert_int_eq(f.answer, ERR_MEMORY);
   ck_assert_ptr_nonnull(strstr(status_message(), "gmsh ran out of memory"));
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* The process of a file in the folder that a shell writes; 0: none in time. */
 static pid_t told_process(const char *path) {
@@ -90,16 +84,15 @@ static pid_t told_process(const char *path) {
 
 /* A program that is killed leaves no mesher: here the shell below it lives
  * until the mesher does not. */
-START_TEST(reader_dies_with_the_program) {
-  mesh_file f;
+TEST(reader_dies_with_the_program) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  char text[400], path[80];
-  snprintf(path, sizeof path, "%s/pid", f.folder);
-  snprintf(text, sizeof text,
-           "SystemCall \"exec > %s 2>&1; echo $PPID; while kill -0 $PPID; do "
-           "sleep 0.01; "
-           "done\";\n",
-           path);
+  PRINTED(path, "%s/pid", f.folder);
+  PRINTED(text,
+          "SystemCall \"exec > %s 2>&1; echo $PPID; while kill -0 $PPID; do "
+          "sleep 0.01; "
+          "done\";\n",
+          path);
   fflush(NULL);
   const pid_t program = fork();
   if (program == 0) {
@@ -114,16 +107,14 @@ START_TEST(reader_dies_with_the_program) {
   if (lives && reader > 0) kill(reader, SIGKILL);
   ck_assert_int_gt(reader, 0);
   ck_assert(!lives);
-  mesh_file_close(&f);
 }
-END_TEST
 
 static void on_alarm(int signal) { (void)signal; }
 
 /* Signals that the program handles must not break the reading, and what is
  * ignored by the program (SIGCHLD) must not lose the mesh. */
-START_TEST(signals_do_not_disturb) {
-  mesh_file f;
+TEST(signals_do_not_disturb) {
+  MESH_FILE f;
   mesh_file_open(&f);
   struct sigaction often = {.sa_handler = on_alarm}; /* no SA_RESTART */
   ck_assert_int_eq(sigaction(SIGALRM, &often, NULL), 0);
@@ -139,16 +130,14 @@ START_TEST(signals_do_not_disturb) {
   signal(SIGCHLD, SIG_DFL);
   ck_assert_msg(m != NULL && m->n_elem > 0, "%s", f.messages);
   memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* With little address space libgmsh cannot be loaded, or runs out later. */
-START_TEST(want_of_memory_in_gmsh_is_told) {
+TEST(want_of_memory_in_gmsh_is_told) {
 #if defined(__SANITIZE_ADDRESS__)
   return; /* it needs terabytes of addresses itself */
 #endif
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   static const char geo[] = PLATE
       "// Merge: tests/preload leaves it to gmsh\n"
@@ -166,9 +155,7 @@ START_TEST(want_of_memory_in_gmsh_is_told) {
     ck_assert_msg(f.answer == ERR_MEMORY, "%s %s", f.messages,
                   status_message());
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* n x n cells of the unit square as a .msh. */
 static void write_square(const mesh_file *f, const char *name, int n) {
@@ -190,15 +177,14 @@ static void write_square(const mesh_file *f, const char *name, int n) {
 
 /* Wherever the memory ends while a file is read, that is what is told: gmsh
  * swallows some of its own failures. */
-START_TEST(want_of_memory_is_never_taken_for_a_bad_mesh) {
+TEST(want_of_memory_is_never_taken_for_a_bad_mesh) {
 #if defined(__SANITIZE_ADDRESS__)
   return;
 #endif
-  char geo[192];
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   write_square(&f, "large.msh", unit_whole() ? 400 : 200);
-  snprintf(geo, sizeof geo, "Merge \"%s/large.msh\";\n", f.folder);
+  PRINTED(geo, "Merge \"%s/large.msh\";\n", f.folder);
   mesh_file_write(&f, "large.geo", geo, strlen(geo));
   struct rlimit old;
   getrlimit(RLIMIT_AS, &old);
@@ -208,23 +194,20 @@ START_TEST(want_of_memory_is_never_taken_for_a_bad_mesh) {
        mb += unit_whole() ? 25 : 10) {
     struct rlimit less = {mb << 20, old.rlim_max};
     ck_assert_int_eq(setrlimit(RLIMIT_AS, &less), 0);
-    mesh *m = mesh_file_read(&f, "large.geo", 1.0, 0, NULL);
+    OWNED mesh *m = mesh_file_read(&f, "large.geo", 1.0, 0, NULL);
     setrlimit(RLIMIT_AS, &old);
     answer = f.answer;
     in_gmsh += strstr(status_message(), "gmsh ran out of memory") != NULL;
     ck_assert_msg(answer == OK || answer == ERR_MEMORY, "%d MB: %s", (int)mb,
                   f.messages);
-    memory_free(m);
   }
   ck_assert_int_eq(answer, OK);
   ck_assert_int_gt(in_gmsh, 0);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* What gmsh prints does not reach the user. */
-START_TEST(nothing_is_printed) {
-  mesh_file f;
+TEST(nothing_is_printed) {
+  MESH_FILE f;
   mesh_file_open(&f);
   fflush(NULL);
   int out = dup(1), err = dup(2);
@@ -233,7 +216,8 @@ START_TEST(nothing_is_printed) {
   dup2(fileno(log), 2);
   printf("mine"); /* buffered: must come out once */
   mesh_file_text(&f, "e.geo", "Printf(\"hello\"); Error(\"bad\"); Exit;\n");
-  mesh *m = mesh_file_text(&f, "g.geo", PLATE "Physical Surface(1)={1};\n");
+  OWNED mesh *m =
+      mesh_file_text(&f, "g.geo", PLATE "Physical Surface(1)={1};\n");
   fflush(NULL);
   dup2(out, 1);
   dup2(err, 2);
@@ -242,27 +226,22 @@ START_TEST(nothing_is_printed) {
   size_t n = fread(text, 1, sizeof text - 1, log);
   ck_assert_uint_eq(n, 4);
   ck_assert_str_eq(text, "mine");
-  memory_free(m);
   fclose(log);
   close(out);
   close(err);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Options files of the .geo or in the home, and the environment, have no
  * effect; the home is left as it is. */
-START_TEST(geometry_alone_makes_the_mesh) {
+TEST(geometry_alone_makes_the_mesh) {
   static const char *const hidden[] = {"g.geo.opt", ".gmshrc", ".gmsh-options"};
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
-  char text[256], home[256], ran[192];
-  snprintf(ran, sizeof ran, "%s", mesh_file_path(&f, "ran"));
-  snprintf(text, sizeof text,
-           "Mesh.ElementOrder = 2; SystemCall \"touch %s\";\n", ran);
+  PRINTED(ran, "%s", mesh_file_path(&f, "ran"));
+  PRINTED(text, "Mesh.ElementOrder = 2; SystemCall \"touch %s\";\n", ran);
   for (int i = 0; i < 3; ++i)
     mesh_file_write(&f, hidden[i], text, strlen(text));
-  snprintf(home, sizeof home, "%s", getenv("HOME") ? getenv("HOME") : "/");
+  PRINTED(home, "%s", getenv("HOME") ? getenv("HOME") : "/");
   ck_assert_int_eq(setenv("HOME", f.folder, 1), 0);
   mesh *m = mesh_file_text(
       &f, "g.geo",
@@ -278,75 +257,64 @@ START_TEST(geometry_alone_makes_the_mesh) {
   while (readdir(folder) != NULL) ++n;
   closedir(folder);
   ck_assert_int_eq(n, 2 + 3 + 1); /* what was written above */
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* gmsh executes the options files of merged files, however they are named. */
-START_TEST(options_of_merged_files_are_refused) {
+TEST(options_of_merged_files_are_refused) {
   static const char *const ways[] = {"Include \"in.geo\";", "Merge \"in.geo\";",
                                      "Merge StrCat(\"in\", \".geo\");"};
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   mesh_file_write(&f, "in.geo", PLATE, strlen(PLATE));
   mesh_file_write(&f, "in.geo.opt", "Mesh.ElementOrder = 2;\n", 23);
   for (int i = 0; i < 3; ++i) {
-    char text[256];
-    snprintf(text, sizeof text, "%s\nPhysical Surface(1)={1};\n", ways[i]);
-    mesh *m = mesh_file_text(&f, "g.geo", text);
+    PRINTED(text, "%s\nPhysical Surface(1)={1};\n", ways[i]);
+    OWNED mesh *m = mesh_file_text(&f, "g.geo", text);
     ck_assert_msg((m != NULL) == (i == 0), "%s", f.messages);
     ck_assert_int_eq(strstr(f.messages, "options file of gmsh") != NULL, i > 0);
-    memory_free(m);
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* A file that only gmsh can name or that cannot be read may have any name,
  * whatever follows it. */
-START_TEST(files_without_a_name_may_have_any_word) {
+TEST(files_without_a_name_may_have_any_word) {
   static const char *const texts[] = {
       "// Merge h;\n Include \"in.geo\"; Printf(\"a\");",
       "Merge StrCat(\"x\", \".geo\"); Include \"in.geo\"; Printf(\"a\");",
       "Merge\"x.msh\"; Printf(\"a\"); Include \"in.geo\";",
       "Include \"none.geo\"; Include \"in.geo\"; Printf(\"a\");"};
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   mesh_file_write(&f, "in.geo", PLATE, strlen(PLATE));
   for (int i = 0; i < 4; ++i) {
-    char path[192];
     geo_text g;
     mesh_file_write(&f, "g.geo", texts[i], strlen(texts[i]));
-    snprintf(path, sizeof path, "%s/g.geo", f.folder);
+    PRINTED(path, "%s/g.geo", f.folder);
     ck_assert_int_eq(geo_read(path, &g), OK);
     ck_assert_int_eq(g.n_file, i == 3 ? 3 : 2);
     ck_assert_int_eq(geo_has(&g, "Surface"), 1);
     ck_assert_int_eq(geo_has(&g, "h"), i > 0);
     geo_free(&g);
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Pipes do not take the place of standard streams. */
-START_TEST(closed_streams_do_not_disturb) {
-  mesh_file f;
+TEST(closed_streams_do_not_disturb) {
+  MESH_FILE f;
   mesh_file_open(&f);
   int kept[3];
   for (int i = 0; i < 3; ++i) {
     kept[i] = dup(i);
     close(i);
   }
-  mesh *m = mesh_file_text(&f, "g.geo", PLATE "Physical Surface(1)={1};\n");
+  OWNED mesh *m =
+      mesh_file_text(&f, "g.geo", PLATE "Physical Surface(1)={1};\n");
   for (int i = 0; i < 3; ++i) {
     dup2(kept[i], i);
     close(kept[i]);
   }
   ck_assert_msg(m != NULL && m->n_elem > 0, "%s", f.messages);
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
 static char left_behind[192];
 
@@ -356,19 +324,17 @@ static void leave_a_file(void) {
 }
 
 /* Handlers of the program belong to the program, also if gmsh calls exit. */
-START_TEST(exit_of_gmsh_runs_no_handler_of_the_program) {
-  mesh_file f;
+TEST(exit_of_gmsh_runs_no_handler_of_the_program) {
+  MESH_FILE f;
   mesh_file_open(&f);
   snprintf(left_behind, sizeof left_behind, "%s", mesh_file_path(&f, "left"));
   ck_assert_int_eq(atexit(leave_a_file), 0);
   ck_assert_ptr_null(mesh_file_text(&f, "exit.geo", "Exit;\n"));
   ck_assert_int_ne(access(left_behind, F_OK), 0);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Records that are none, do not fit or stop: refused, nothing is kept. */
-START_TEST(rubbish_from_the_reader_is_refused) {
+TEST(rubbish_from_the_reader_is_refused) {
   static const wire_head heads[][3] = {
       {{0, WIRE_END, 0, 0, 0}},
       {{WIRE_MAGIC, WIRE_COUNT, 0, 0, 0}},
@@ -402,13 +368,5 @@ START_TEST(rubbish_from_the_reader_is_refused) {
     ck_assert_uint_eq(memory_in_use(), before);
   }
 }
-END_TEST
 
-UNIT_MAIN("mesh_reader", good_file_is_read_after_bad_ones,
-          reader_that_dies_is_told, reader_dies_with_the_program,
-          signals_do_not_disturb, want_of_memory_in_gmsh_is_told,
-          want_of_memory_is_never_taken_for_a_bad_mesh, nothing_is_printed,
-          geometry_alone_makes_the_mesh, options_of_merged_files_are_refused,
-          files_without_a_name_may_have_any_word, closed_streams_do_not_disturb,
-          exit_of_gmsh_runs_no_handler_of_the_program,
-          rubbish_from_the_reader_is_refused)
+UNIT_MAIN("mesh_reader")

@@ -1,5 +1,4 @@
 /* src/base/message.c: order, caret, chain of includes, totals, manual. */
-#include "base/base.h"
 #include "base/message.h"
 #include "support/unit.h"
 
@@ -19,8 +18,8 @@ static message_log *new_log(void) {
   return log;
 }
 
-START_TEST(a_message_shows_place_line_and_caret) {
-  message_log *log = new_log();
+TEST(a_message_shows_place_line_and_caret) {
+  OWNED message_log *log = new_log();
   place at = {"block.inp", 14, 12, "*FRICTON, CONTACT=FOOT", NULL, 0};
   message_add(log, P1003, &at, "unknown card *%s", "FRICTON");
   ck_assert_str_eq(printed(log),
@@ -28,12 +27,10 @@ START_TEST(a_message_shows_place_line_and_caret) {
                    "      14 | *FRICTON, CONTACT=FOOT\n"
                    "         |            ^\n"
                    "1 error; protis --explain P1003 says what to do\n");
-  memory_free(log);
 }
-END_TEST
 
-START_TEST(the_caret_stands_below_tabs_and_letters_of_two_bytes) {
-  message_log *log = new_log();
+TEST(the_caret_stands_below_tabs_and_letters_of_two_bytes) {
+  OWNED message_log *log = new_log();
   place at = {"a", 1, 8, "\tA\xC3\xA4,\tB", NULL, 0};
   message_add(log, P1003, &at, "x");
   at.column_no = 1;
@@ -46,12 +43,10 @@ START_TEST(the_caret_stands_below_tabs_and_letters_of_two_bytes) {
                    "       1 | \tA\xC3\xA4,\tB\n"
                    "         | \t   \t ^\n"
                    "2 errors; protis --explain P1003 says what to do\n");
-  memory_free(log);
 }
-END_TEST
 
-START_TEST(a_place_may_lack_column_line_or_file) {
-  message_log *log = new_log();
+TEST(a_place_may_lack_column_line_or_file) {
+  OWNED message_log *log = new_log();
   place no_column = {"a", 3, 0, "text", NULL, 0},
         no_line = {"a", 0, 5, NULL, NULL, 0};
   message_add(log, P1003, &no_column, "one");
@@ -63,15 +58,13 @@ START_TEST(a_place_may_lack_column_line_or_file) {
                    "       3 | text\n"
                    "error P1003: three\n"
                    "3 errors; protis --explain P1003 says what to do\n");
-  memory_free(log);
 }
-END_TEST
 
 /* In the order in which the input is read: an include stands where its card
  * stands, whatever the order of the messages. */
 /* As after --restart, which keeps no place for one without a file. */
-START_TEST(a_warning_or_note_without_a_place_is_told_once) {
-  message_log *log = new_log();
+TEST(a_warning_or_note_without_a_place_is_told_once) {
+  OWNED message_log *log = new_log();
   const place nowhere = {0};
   message_add(log, P2058, NULL, "one");
   message_add(log, P2058, &nowhere, "one");
@@ -79,12 +72,10 @@ START_TEST(a_warning_or_note_without_a_place_is_told_once) {
   message_add(log, P4003, &nowhere, "two");
   message_add(log, P4003, NULL, "two");
   ck_assert_int_eq(message_count(log, NOTE), 1);
-  memory_free(log);
 }
-END_TEST
 
-START_TEST(messages_come_in_the_order_of_the_input) {
-  message_log *log = new_log();
+TEST(messages_come_in_the_order_of_the_input) {
+  OWNED message_log *log = new_log();
   place include = {"a", 5, 2, NULL, NULL, 0},
         deeper = {"b", 2, 1, NULL, &include, 0};
   place at[] = {{"a", 5, 3, NULL, NULL, 0},     {"a", 9, 1, NULL, NULL, 0},
@@ -106,12 +97,10 @@ START_TEST(messages_come_in_the_order_of_the_input) {
                                "c:90:1: error P1003: [5]\n"
                                "           included from b:2\n"
                                "           included from a:5\n"));
-  memory_free(log);
 }
-END_TEST
 
-START_TEST(the_texts_are_copies) {
-  message_log *log = new_log();
+TEST(the_texts_are_copies) {
+  OWNED message_log *log = new_log();
   char file[] = "a.inp", line[] = "*STEP";
   place at = {file, 1, 1, line, NULL, 0};
   message_add(log, P1003, &at, "x");
@@ -119,12 +108,10 @@ START_TEST(the_texts_are_copies) {
   memset(line, '#', sizeof line - 1);
   ck_assert_ptr_nonnull(strstr(printed(log), "a.inp:1:1"));
   ck_assert_ptr_nonnull(strstr(text, "| *STEP\n"));
-  memory_free(log);
 }
-END_TEST
 
-START_TEST(a_long_line_is_cut_around_the_column) {
-  message_log *log = new_log();
+TEST(a_long_line_is_cut_around_the_column) {
+  OWNED message_log *log = new_log();
   char line[4001];
   for (int i = 0; i < 4000; ++i) line[i] = (char)('a' + i % 10);
   line[4000] = '\0';
@@ -136,33 +123,27 @@ START_TEST(a_long_line_is_cut_around_the_column) {
   ck_assert_ptr_nonnull(strstr(shown, "..."));
   ck_assert_int_eq((int)(hash - shown), (int)(strchr(below, '^') - below));
   ck_assert_uint_lt(strlen(text), 500);
-  memory_free(log);
 }
-END_TEST
 
-START_TEST(control_characters_are_not_printed) {
-  message_log *log = new_log();
+TEST(control_characters_are_not_printed) {
+  OWNED message_log *log = new_log();
   place at = {"a", 1, 1, "x\x1b[2J\x07", NULL, 0};
   message_add(log, P1003, &at, "bad \x1b[31m");
   for (const char *p = printed(log); *p != '\0'; ++p)
     ck_assert((unsigned char)*p >= ' ' || *p == '\n');
-  memory_free(log);
 }
-END_TEST
 
-START_TEST(a_text_longer_than_the_room_is_cut) {
-  message_log *log = new_log();
+TEST(a_text_longer_than_the_room_is_cut) {
+  OWNED message_log *log = new_log();
   char name[4000];
   memset(name, 'N', sizeof name - 1);
   name[sizeof name - 1] = '\0';
   message_add(log, P1003, NULL, "unknown card *%s", name);
   ck_assert_ptr_nonnull(strstr(printed(log), "NNN...\n"));
-  memory_free(log);
 }
-END_TEST
 
-START_TEST(after_a_hundred_errors_the_rest_is_counted) {
-  message_log *log = new_log();
+TEST(after_a_hundred_errors_the_rest_is_counted) {
+  OWNED message_log *log = new_log();
   message_add(log, P1030, NULL, "of the run");
   const message_mark before = message_now(log);
   for (int i = 1; i <= 250; ++i) {
@@ -187,31 +168,26 @@ START_TEST(after_a_hundred_errors_the_rest_is_counted) {
   ck_assert_str_eq(printed(log), "warning P1030: of the run\n1 warning\n");
   message_add(log, P1003, NULL, "of the run");
   message_forget(log, message_now(log));
-  message_log *other = new_log();
+  OWNED message_log *other = new_log();
   message_take(other, log);
   ck_assert_int_eq(message_count(log, ERROR), 1);
   ck_assert_int_eq(message_count(other, ERROR), 1);
   ck_assert_int_eq(message_count(other, WARNING), 1);
-  memory_free(log);
-  memory_free(other);
 }
-END_TEST
 
-START_TEST(an_empty_log_prints_nothing_and_is_ok) {
-  message_log *log = new_log();
+TEST(an_empty_log_prints_nothing_and_is_ok) {
+  OWNED message_log *log = new_log();
   ck_assert_str_eq(printed(log), "");
   ck_assert_int_eq(message_status(log, ERR_DECK), OK);
   message_add(log, P1030, NULL, "only a warning");
   ck_assert_int_eq(message_status(log, ERR_DECK), OK);
   ck_assert_str_eq(printed(log), "warning P1030: only a warning\n1 warning\n");
-  memory_free(log);
   memory_free(NULL);
 }
-END_TEST
 
 /* The listing must not depend on the folder. */
-START_TEST(the_list_for_the_listing_has_no_folder_and_no_source) {
-  message_log *log = new_log();
+TEST(the_list_for_the_listing_has_no_folder_and_no_source) {
+  OWNED message_log *log = new_log();
   place at = {"/some/where/a.inp", 2, 3, "text", NULL, 0};
   message_add(log, P1030, &at, "one");
   message_add(log, P1003, &at, "two");
@@ -220,9 +196,7 @@ START_TEST(the_list_for_the_listing_has_no_folder_and_no_source) {
   message_list(log, WARNING, f);
   fclose(f);
   ck_assert_str_eq(text, "a.inp:2:3: warning P1030: one\n");
-  memory_free(log);
 }
-END_TEST
 
 static int explained(const char *number) {
   memset(text, 0, sizeof text);
@@ -232,7 +206,7 @@ static int explained(const char *number) {
   return known;
 }
 
-START_TEST(each_number_has_a_manual_entry) {
+TEST(each_number_has_a_manual_entry) {
 #define NUMBER(number, severity, title, remedy) number,
 #define TITLE(number, severity, title, remedy) title,
 #define REMEDY(number, severity, title, remedy) remedy,
@@ -240,8 +214,7 @@ START_TEST(each_number_has_a_manual_entry) {
   static const char *const titles[] = {MESSAGE_LIST(TITLE)};
   static const char *const remedies[] = {MESSAGE_LIST(REMEDY)};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; ++i) {
-    char number[8];
-    snprintf(number, sizeof number, "P%d", numbers[i]);
+    PRINTED(number, "P%d", numbers[i]);
     ck_assert(explained(number));
     ck_assert_ptr_nonnull(strstr(text, titles[i]));
     ck_assert_ptr_nonnull(strstr(text, number));
@@ -252,9 +225,8 @@ START_TEST(each_number_has_a_manual_entry) {
       ck_assert_msg(strlen(p) <= 80, "%s", p);
   }
 }
-END_TEST
 
-START_TEST(an_unknown_number_is_not_explained) {
+TEST(an_unknown_number_is_not_explained) {
   ck_assert(!explained("P9999"));
   ck_assert(!explained("P10030"));
   ck_assert(!explained("P100"));
@@ -265,9 +237,8 @@ START_TEST(an_unknown_number_is_not_explained) {
   ck_assert_ptr_nonnull(strstr(text, "P1001"));
   ck_assert_ptr_nonnull(strstr(text, "P2003"));
 }
-END_TEST
 
-START_TEST(without_memory_messages_are_counted_and_reported) {
+TEST(without_memory_messages_are_counted_and_reported) {
   place include = {"a", 5, 2, "x", NULL, 0}, at = {"b", 2, 1, "y", &include, 0};
   size_t before = memory_in_use();
   for (long k = 1, refused = 1; refused; ++k) {
@@ -285,29 +256,13 @@ START_TEST(without_memory_messages_are_counted_and_reported) {
     ck_assert_uint_eq(memory_in_use(), before);
   }
 }
-END_TEST
 
-START_TEST(printing_does_without_memory) {
-  message_log *log = new_log();
+TEST(printing_does_without_memory) {
+  OWNED message_log *log = new_log();
   message_add(log, P1003, NULL, "one");
   memory_refuse(1, 1);
   ck_assert_str_eq(printed(log), "error P1003: one\n1 error\n");
   memory_refuse(0, 0);
-  memory_free(log);
 }
-END_TEST
 
-UNIT_MAIN("message", a_message_shows_place_line_and_caret,
-          the_caret_stands_below_tabs_and_letters_of_two_bytes,
-          a_place_may_lack_column_line_or_file,
-          a_warning_or_note_without_a_place_is_told_once,
-          messages_come_in_the_order_of_the_input, the_texts_are_copies,
-          a_long_line_is_cut_around_the_column,
-          control_characters_are_not_printed,
-          a_text_longer_than_the_room_is_cut,
-          after_a_hundred_errors_the_rest_is_counted,
-          an_empty_log_prints_nothing_and_is_ok,
-          the_list_for_the_listing_has_no_folder_and_no_source,
-          each_number_has_a_manual_entry, an_unknown_number_is_not_explained,
-          without_memory_messages_are_counted_and_reported,
-          printing_does_without_memory)
+UNIT_MAIN("message")

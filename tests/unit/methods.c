@@ -1,6 +1,5 @@
 /* src/solver: the options of the rows. What every row must do with its
  * defaults is tested in solver.c. */
-#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
@@ -74,35 +73,31 @@ static void must_agree(contact_case *c, int k, int conditions) {
   free(u);
 }
 
-START_TEST(variants_agree_on_random_problems) {
+TEST(variants_agree_on_random_problems) {
   static const double mus[] = {0.0, 0.1, 0.3, 0.5};
   for (int k = 0; k < 120; ++k) {
-    contact_case c = case_any(2 + k % 2, 1 + k % 17, mus[k / 2 % 4], k / 8 % 2,
+    CONTACT_CASE c = case_any(2 + k % 2, 1 + k % 17, mus[k / 2 % 4], k / 8 % 2,
                               (unsigned long long)(900 + k));
     must_agree(&c, k, 1);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Tresca friction, also where nothing pushes. */
-START_TEST(variants_agree_with_a_given_limit) {
+TEST(variants_agree_with_a_given_limit) {
   for (int k = 0; k < 40; ++k) {
-    contact_case c = case_any(2 + k % 2, 1 + k % 11, 0.5, k / 2 % 2,
+    CONTACT_CASE c = case_any(2 + k % 2, 1 + k % 11, 0.5, k / 2 % 2,
                               (unsigned long long)(1300 + k));
     for (int i = 0; i < c.cp.n; ++i) c.g0[i] = 0.1 * (i % 4);
     c.cp.B = NULL;
     must_agree(&c, k, 1);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* One tangent prescribed, one node in a corner. */
-START_TEST(variants_agree_on_held_and_cornered_nodes) {
+TEST(variants_agree_on_held_and_cornered_nodes) {
   for (int k = 0; k < 24; ++k) {
     int dim = 2 + k % 2, n = 4 + k % 5, m = dim * n;
-    contact_case c = case_any(dim, n, 0.4, 0, (unsigned long long)(1500 + k));
+    CONTACT_CASE c = case_any(dim, n, 0.4, 0, (unsigned long long)(1500 + k));
     unsigned char held[64] = {0};
     double side[64];
     int dof = dim + 1, corner = 2 * (dim - 1);
@@ -117,33 +112,29 @@ START_TEST(variants_agree_on_held_and_cornered_nodes) {
     c.cp.side_gap = side;
     must_agree(&c, k, 0);
     ck_assert_double_eq_tol(c.u[dof], c.f[dof] / c.A[dof + m * dof], 1e-9);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Only the floor holds the block: the pressures add up to the load on it. */
-START_TEST(floating_block_is_held_by_its_floor) {
+TEST(floating_block_is_held_by_its_floor) {
   case_block_data d = {
       .columns = 10, .layers = 6, .nu = 0.3, .mu = 0.5, .top = {0.02, -0.2}};
-  contact_case c = case_block(&d);
+  CONTACT_CASE c = case_block(&d);
   ck_assert(c.cp.floating);
   must_agree(&c, 0, 1);
   double push = 0.0;
   for (int i = 0; i < c.cp.n; ++i) push -= c.r[2 * i];
   ck_assert_double_eq_tol(push, 0.2 * d.columns, 1e-9);
-  case_free(&c);
 }
-END_TEST
 
 /* The compliance alone is known. */
-START_TEST(compliance_form_gives_the_same_forces) {
+TEST(compliance_form_gives_the_same_forces) {
   for (int k = 0; k < 12; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2 + k % 2, 8, 0.3, 0, (unsigned long long)(1700 + k));
     size_t m = (size_t)c.cp.m;
-    double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q),
-           *r = calloc(m, sizeof *r);
+    FREED double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q),
+                 *r = calloc(m, sizeof *r);
     ck_assert(case_inverse(c.cp.m, c.A, W));
     ck_assert_int_eq(solve_by(&newton, &c, 1e-12).outcome, CONVERGED);
     memcpy(r, c.r, m * sizeof *r);
@@ -156,24 +147,19 @@ START_TEST(compliance_form_gives_the_same_forces) {
       for (size_t j = 0; j < m; ++j)
         ck_assert_double_eq_tol(c.r[j], r[j], 1e-8);
     }
-    free(W);
-    free(q);
-    free(r);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* The compliance is known to a part in a million only: displacements of forces
  * satisfy the stiffness to the square of that. */
-START_TEST(displacements_are_refined_by_the_stiffness) {
+TEST(displacements_are_refined_by_the_stiffness) {
   for (int k = 0; k < 6; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2 + k % 2, 6, 0.3, 0, (unsigned long long)(2300 + k));
     const size_t m = (size_t)c.cp.m;
     double *W = calloc(m * m, sizeof *W), *u = calloc(m, sizeof *u),
            *Au = calloc(m, sizeof *Au), most = 0.0, scale = 0.0;
-    force_set *s = NULL;
+    OWNED force_set *s = NULL;
     ck_assert(case_inverse(c.cp.m, c.A, W));
     for (size_t i = 0; i < m * m; ++i) W[i] *= 1.0 + 1e-6;
     for (size_t i = 0; i < m; ++i) c.r[i] = sin(1.0 + (double)i);
@@ -187,17 +173,14 @@ START_TEST(displacements_are_refined_by_the_stiffness) {
       scale = fmax(scale, fabs(c.f[i] + c.r[i]));
     }
     ck_assert_double_le(most, 1e-10 * scale);
-    memory_free(s);
     free(W);
     free(u);
     free(Au);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* What each acceleration is for. */
-START_TEST(accelerations_save_steps) {
+TEST(accelerations_save_steps) {
   static const variant pairs[][2] = {
       {{"aitken", "ACCELERATION", "AITKEN"},
        {"aitken", "ACCELERATION", "NONE"}},
@@ -215,7 +198,7 @@ START_TEST(accelerations_save_steps) {
                        .mu = 0.3,
                        .top = {0.0, -0.1},
                        .left = {0.05, -0.1}};
-  contact_case c = case_block(&d);
+  CONTACT_CASE c = case_block(&d);
   for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
     solver_report fast = solve_by(&pairs[i][0], &c, 1e-8);
     ck_assert_int_eq(fast.outcome, CONVERGED);
@@ -225,12 +208,10 @@ START_TEST(accelerations_save_steps) {
                   pairs[i][0].solver, pairs[i][0].value, fast.iterations,
                   pairs[i][1].value, slow.iterations);
   }
-  case_free(&c);
 }
-END_TEST
 
 /* Each option of the sweeps does what its name says. */
-START_TEST(options_of_sor_have_an_effect) {
+TEST(options_of_sor_have_an_effect) {
   static const variant ways[] = {
       {"sor", NULL, NULL},           {"sor", "SWEEP", "BACKWARD"},
       {"sor", "SWEEP", "SYMMETRIC"}, {"sor", "OMEGA", "1"},
@@ -242,7 +223,7 @@ START_TEST(options_of_sor_have_an_effect) {
                        .nu = 0.3,
                        .mu = 0.3,
                        .left = {0.1, 0.0}};
-  contact_case c = case_block(&d);
+  CONTACT_CASE c = case_block(&d);
   solver_report rep[WAYS];
   for (int i = 0; i < c.cp.n; ++i) c.f[2 * i] += 0.05;
   for (int i = 0; i < WAYS; ++i) {
@@ -253,13 +234,11 @@ START_TEST(options_of_sor_have_an_effect) {
     ck_assert_int_eq(rep[i].limit_updates > 1, i == WAYS - 1);
   }
   ck_assert_int_lt(rep[4].iterations, rep[3].iterations); /* omega pays       */
-  case_free(&c);
 }
-END_TEST
 
 /* 200 nodes numbered along the slip or against it: sweeps that follow the
  * numbers were seen to go in circles. */
-START_TEST(long_row_of_slipping_nodes_is_solved) {
+TEST(long_row_of_slipping_nodes_is_solved) {
   for (int against = 0; against <= 1; ++against) {
     case_block_data d = {
         .columns = unit_whole() ? 199 : 99, .layers = 40, .symmetric = 1};
@@ -267,7 +246,7 @@ START_TEST(long_row_of_slipping_nodes_is_solved) {
     d.mu = 0.3;
     d.top[1] = -0.002;
     d.left[0] = 0.006;
-    contact_case c = case_block(&d);
+    CONTACT_CASE c = case_block(&d);
     if (against) { /* mirrored: the same problem from the other end           */
       int m = c.cp.m;
       double *A = malloc(sizeof *A * (size_t)(m * m)), f[400];
@@ -293,10 +272,8 @@ START_TEST(long_row_of_slipping_nodes_is_solved) {
       ck_assert_int_eq(solve_by(&ways[i], &c, 1e-8).outcome, CONVERGED);
       ck_assert_double_lt(case_violation(&c, c.u, c.r), 1e-8);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 static void hear_cycle(void *ctx, const solver_step *s) {
   ck_assert_int_ge(s->status_changes, 0);
@@ -306,7 +283,7 @@ static void hear_cycle(void *ctx, const solver_step *s) {
 /* Steep friction: a few problems send the sweeps round in circles; small
  * friction none, whatever the tolerance: below the rounding nothing is left to
  * miss. */
-START_TEST(cycle_is_told_from_stagnation) {
+TEST(cycle_is_told_from_stagnation) {
   static const char *const names[] = {"sor", "aitken"};
   for (int a = 0; a < 2; ++a) {
     const solver_ops *ops = solver_find(names[a]);
@@ -315,7 +292,7 @@ START_TEST(cycle_is_told_from_stagnation) {
     option_defaults(ops->options, param);
     for (int k = 0; k < 200; ++k)
       for (int rounding = 0; rounding <= (k < 8); ++rounding) {
-        contact_case c =
+        CONTACT_CASE c =
             case_any(2 + k % 2, 2 + k % 6, rounding ? 0.2 : 4.0 + k % 5 * 4,
                      k / 2 % 2, (unsigned long long)(7000 + k));
         int heard = 0;
@@ -323,20 +300,17 @@ START_TEST(cycle_is_told_from_stagnation) {
         solver_control control = {.tol = rounding ? 1e-25 : 1e-10,
                                   .listener = &listener};
         solver_report rep;
-        void *work = NULL;
+        OWNED void *work = NULL;
         ck_assert_int_eq(solver_set_up(ops, &c.cp, param, &work), OK);
         ck_assert_int_eq(
             ops->solve(&c.cp, param, work, &control, c.u, c.r, &rep), OK);
-        memory_free(work);
         if (rounding) ck_assert_int_eq(rep.outcome, CONVERGED);
         if (rep.outcome == STOPPED_CYCLE) ck_assert_int_gt(heard, 10);
         cycles += rep.outcome == STOPPED_CYCLE;
-        case_free(&c);
       }
     ck_assert_msg(cycles > 0, "%s: %d", names[a], cycles);
   }
 }
-END_TEST
 
 /* What the listener hears of AUGLAG. */
 typedef struct heard {
@@ -359,7 +333,7 @@ static outcome run_auglag(contact_case *c, double tol, int passes, heard *h) {
   solver_control control = {
       .tol = tol, .limit_max_iter = passes, .listener = &listener};
   solver_report rep;
-  void *work = NULL;
+  OWNED void *work = NULL;
   size_t bytes = (size_t)c->cp.m * sizeof *c->u;
   *h = (heard){0};
   memset(c->u, 0, bytes);
@@ -368,17 +342,16 @@ static outcome run_auglag(contact_case *c, double tol, int passes, heard *h) {
   ck_assert_int_eq(solver_set_up(&auglag_solver, &c->cp, param, &work), OK);
   ck_assert_int_eq(
       auglag_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
-  memory_free(work);
   return rep.outcome;
 }
 
 /* Steep friction sends the Newton steps of AUGLAG round in circles on a few
  * problems: told at the step, mended by the other variant, and the verdict
  * where that cannot end either (one pass of its sliding limit). */
-START_TEST(auglag_tells_states_that_come_back) {
+TEST(auglag_tells_states_that_come_back) {
   int cycling = 0, changes = 0;
   for (int k = 0; k < 100; ++k) {
-    contact_case c = case_any(2 + k % 2, 2 + k % 6, 4.0 + k % 5 * 4, k / 2 % 2,
+    CONTACT_CASE c = case_any(2 + k % 2, 2 + k % 6, 4.0 + k % 5 * 4, k / 2 % 2,
                               (unsigned long long)(7000 + k));
     heard h;
     ck_assert_int_eq(run_auglag(&c, 1e-10, 0, &h), CONVERGED);
@@ -387,29 +360,26 @@ START_TEST(auglag_tells_states_that_come_back) {
       if (cycling++ < 2)
         ck_assert_int_eq(run_auglag(&c, 1e-10, 1, &h), STOPPED_CYCLE);
     }
-    case_free(&c);
   }
   ck_assert_int_gt(cycling, 0);
   for (int k = 0; k < 20; ++k) {
-    contact_case c = case_any(2, 10 + k, 0.2, 0, (unsigned long long)k);
+    CONTACT_CASE c = case_any(2, 10 + k, 0.2, 0, (unsigned long long)k);
     heard h;
     ck_assert_int_eq(run_auglag(&c, 1e-10, 0, &h), CONVERGED);
     ck_assert_int_eq(h.cycles + h.passes, 0);
     changes += h.changes;
     if (k < 4) ck_assert_int_ne(run_auglag(&c, 1e-25, 0, &h), STOPPED_CYCLE);
-    case_free(&c);
   }
   ck_assert_int_gt(changes, 20);
 }
-END_TEST
 
-START_TEST(variants_keep_their_bits_under_factors_of_two) {
+TEST(variants_keep_their_bits_under_factors_of_two) {
   static const int powers[][2] = {{41, 0}, {-33, 3}, {0, 13}, {7, -21}};
   for (int k = 0; k < 16; ++k)
     for (int i = 0; i < VARIANTS; ++i) {
-      contact_case c = case_any(2 + k % 2, 2 + k, k % 3 ? 0.4 : 0.0, k / 2 % 2,
+      CONTACT_CASE c = case_any(2 + k % 2, 2 + k, k % 3 ? 0.4 : 0.0, k / 2 % 2,
                                 (unsigned long long)(1900 + k));
-      contact_case d = case_any(2 + k % 2, 2 + k, k % 3 ? 0.4 : 0.0, k / 2 % 2,
+      CONTACT_CASE d = case_any(2 + k % 2, 2 + k, k % 3 ? 0.4 : 0.0, k / 2 % 2,
                                 (unsigned long long)(1900 + k));
       int m = c.cp.m, n = c.cp.n, a = powers[k % 4][0], b = powers[k % 4][1];
       for (int j = 0; j < m * m; ++j) d.A[j] = ldexp(c.A[j], a);
@@ -422,16 +392,13 @@ START_TEST(variants_keep_their_bits_under_factors_of_two) {
       for (int j = 0; j < m; ++j)
         ck_assert_msg(d.u[j] == ldexp(c.u[j], b), "%s %s: problem %d",
                       variants[i].solver, variants[i].value, k);
-      case_free(&c);
-      case_free(&d);
     }
 }
-END_TEST
 
-START_TEST(refused_memory_is_given_back) {
+TEST(refused_memory_is_given_back) {
   for (int i = 0; i < VARIANTS; ++i)
     for (int dim = 2; dim <= 3; ++dim) {
-      contact_case c = case_any(dim, 6, 0.3, 0, 2100);
+      CONTACT_CASE c = case_any(dim, 6, 0.3, 0, 2100);
       double param[PARAM_SIZE / sizeof(double)] = {0.0};
       set_param(&variants[i], param);
       solver_choice choice = {
@@ -452,18 +419,7 @@ START_TEST(refused_memory_is_given_back) {
       }
       ck_assert_int_eq(st, OK);
       ck_assert_int_gt(k, 8);
-      case_free(&c);
     }
 }
-END_TEST
 
-UNIT_MAIN("methods", variants_agree_on_random_problems,
-          variants_agree_with_a_given_limit,
-          variants_agree_on_held_and_cornered_nodes,
-          floating_block_is_held_by_its_floor,
-          compliance_form_gives_the_same_forces,
-          displacements_are_refined_by_the_stiffness, accelerations_save_steps,
-          options_of_sor_have_an_effect, long_row_of_slipping_nodes_is_solved,
-          cycle_is_told_from_stagnation, auglag_tells_states_that_come_back,
-          variants_keep_their_bits_under_factors_of_two,
-          refused_memory_is_given_back)
+UNIT_MAIN("methods")

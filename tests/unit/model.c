@@ -1,5 +1,4 @@
 /* src/model: decks to models, loads of the steps, the echo of a deck. */
-#include "base/base.h"
 #include "effects/rows.h"
 #include "model/check/check.h"
 #include "model/facts.h"
@@ -82,43 +81,37 @@ static const load_case load_cases[] = {
      {360.0, 0, -480.0},
      -540.0}};
 
-START_TEST(resultant_is_the_integral_of_the_load) {
+TEST(resultant_is_the_integral_of_the_load) {
   for (size_t k = 0; k < sizeof load_cases / sizeof *load_cases; ++k) {
     const load_case *c = &load_cases[k];
-    char text[1024];
-    text_model s;
-    snprintf(text, sizeof text,
-             HEAD
-             "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s%s\n*STEP\n*STATIC\n"
-             "%s*END STEP\n",
-             c->section[0] ? ", " : "", c->section, c->cards);
+    TEXT_MODEL s;
+    PRINTED(text,
+            HEAD
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s%s\n*STEP\n*STATIC\n"
+            "%s*END STEP\n",
+            c->section[0] ? ", " : "", c->section, c->cards);
     text_model_read(&s, text, c->dim == 2 ? square() : box());
     ck_assert_int_eq(s.st, OK);
-    double *F = calloc((size_t)(c->dim * s.msh->n_node), sizeof *F);
+    FREED double *F = calloc((size_t)(c->dim * s.msh->n_node), sizeof *F);
     ck_assert_int_eq(load_forces(s.m, s.msh, &s.m->steps[0], 1.0, F), OK);
     for (int a = 0; a < c->dim; ++a)
       if (!(c->section[0] == 'T' && c->section[1] == 'Y' && a == 0))
         ck_assert_double_eq_tol(resultant(s.msh, F, a), c->force[a], 1e-10);
     if (!isnan(c->moment))
       ck_assert_double_eq_tol(moment_z(s.msh, F), c->moment, 1e-10);
-    free(F);
-    text_model_close(&s);
   }
 }
-END_TEST
 
 /* Value of the first load of a step at time t at the origin, as the force on
  * the group of one corner... here: all nodes of LEFT carry the same force. */
 static double point_force(const text_model *s, int step_id, double t) {
-  double *F = calloc((size_t)(2 * s->msh->n_node), sizeof *F);
+  FREED double *F = calloc((size_t)(2 * s->msh->n_node), sizeof *F);
   ck_assert_int_eq(load_forces(s->m, s->msh, &s->m->steps[step_id], t, F), OK);
-  double f = F[2 * s->msh->group[1].node_id[0]];
-  free(F);
-  return f;
+  return F[2 * s->msh->group[1].node_id[0]];
 }
 
-START_TEST(loads_ramp_stay_change_and_end) {
-  text_model s;
+TEST(loads_ramp_stay_change_and_end) {
+  TEXT_MODEL s;
   text_model_read(
       &s,
       HEAD
@@ -143,13 +136,11 @@ START_TEST(loads_ramp_stay_change_and_end) {
   ck_assert_double_eq(point_force(&s, 4, 7.5), 6.0); /* held at the end      */
   ck_assert_double_eq(point_force(&s, 5, 8.5), 3.0); /* OP=NEW: down to zero */
   ck_assert_int_eq(s.m->steps[6].loads.n, 0);
-  text_model_close(&s);
 }
-END_TEST
 
 /* In axisymmetry r and z are the coordinates, as x and y of the mesh are; r of
  * a *PARAMETER is that; elsewhere r is no name. */
-START_TEST(expressions_have_the_coordinates_of_the_section) {
+TEST(expressions_have_the_coordinates_of_the_section) {
   static const struct {
     const char *parameter, *type, *expression;
     double value; /* at (2, 3) after 5 s; NAN: refused */
@@ -162,18 +153,17 @@ START_TEST(expressions_have_the_coordinates_of_the_section) {
               {"", "CAX3", "10*q", NAN}};
   static const double at[3] = {2, 3, 0};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-    char text[800];
-    text_model s;
-    snprintf(text, sizeof text,
-             "%s" HEAD
-             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
-             "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-             "*CONTACT, NAME=C, GROUP=LEFT, OBSTACLE=O\n"
-             "*FRICTION, CONTACT=C, LAW=COULOMB, TABLE=%s\n"
-             "0., 0., 6., 3.\n"
-             "*STEP\n*STATIC\n*DSLOAD\nBOTTOM, P, \"%s\"\n*END STEP\n",
-             rows[i].parameter, rows[i].type,
-             strcmp(rows[i].type, "CAX3") == 0 ? "Z" : "Y", rows[i].expression);
+    TEXT_MODEL s;
+    PRINTED(text,
+            "%s" HEAD
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=LEFT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB, TABLE=%s\n"
+            "0., 0., 6., 3.\n"
+            "*STEP\n*STATIC\n*DSLOAD\nBOTTOM, P, \"%s\"\n*END STEP\n",
+            rows[i].parameter, rows[i].type,
+            strcmp(rows[i].type, "CAX3") == 0 ? "Z" : "Y", rows[i].expression);
     text_model_read(&s, text, square());
     ck_assert_int_eq(s.st, isnan(rows[i].value) ? ERR_DECK : OK);
     if (s.st == OK) {
@@ -182,12 +172,10 @@ START_TEST(expressions_have_the_coordinates_of_the_section) {
       ck_assert_double_eq(quantity_value(q, at, 5), rows[i].value);
       ck_assert_double_eq(table_value(mu, at, 5), 1.5);
     }
-    text_model_close(&s);
   }
 }
-END_TEST
 
-START_TEST(echo_reads_back_to_the_same_echo) {
+TEST(echo_reads_back_to_the_same_echo) {
   static const char text[] =
       "*HEADING\nA title, with a comma\n*PARAMETER\nH = 0.1\n"
       "*UNITS, LENGTH=mm\n" HEAD
@@ -199,14 +187,13 @@ START_TEST(echo_reads_back_to_the_same_echo) {
       "*SOLVER, METHOD=SOR, TOL=1.D-9\n*PRINT, CONTACT\n*END STEP\n";
   char *echo[2] = {NULL, NULL};
   for (int pass = 0; pass < 2; ++pass) {
-    text_model s;
+    TEXT_MODEL s;
     size_t size;
     text_model_read(&s, pass == 0 ? text : echo[0], square());
     ck_assert_int_eq(s.st, OK);
     FILE *f = open_memstream(&echo[pass], &size);
     model_echo(f, s.m);
     fclose(f);
-    text_model_close(&s);
   }
   ck_assert_str_eq(echo[0], echo[1]);
   ck_assert_ptr_nonnull(strstr(echo[0], "THICKNESS=0.1"));
@@ -215,34 +202,30 @@ START_TEST(echo_reads_back_to_the_same_echo) {
   free(echo[0]);
   free(echo[1]);
 }
-END_TEST
 
 /* Of any length, also one whose square is no number. */
-START_TEST(directions_have_unit_length) {
+TEST(directions_have_unit_length) {
   static const char *const given[] = {"3E-200, 4E-200", "3E200, 4E200",
                                       "0.3, 0.4"};
   for (size_t k = 0; k < sizeof given / sizeof *given; ++k) {
-    char text[600];
-    text_model s;
-    snprintf(text, sizeof text,
-             HEAD
-             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
-             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n%s\n"
-             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-             "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2, 0.\n*END STEP\n",
-             given[k]);
+    TEXT_MODEL s;
+    PRINTED(text,
+            HEAD
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n%s\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2, 0.\n*END STEP\n",
+            given[k]);
     text_model_read(&s, text, square());
     ck_assert_int_eq(s.st, OK);
     const double *n = s.m->obstacles[0].direction;
     ck_assert_double_eq_tol(n[0], 0.6, 1e-15);
     ck_assert_double_eq_tol(n[1], 0.8, 1e-15);
-    text_model_close(&s);
   }
 }
-END_TEST
 
-START_TEST(effects_are_what_the_deck_calls_for) {
-  text_model s;
+TEST(effects_are_what_the_deck_calls_for) {
+  TEXT_MODEL s;
   text_model_read(&s,
                   HEAD
                   "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -254,13 +237,11 @@ START_TEST(effects_are_what_the_deck_calls_for) {
                   square());
   ck_assert_int_eq(s.st, OK);
   ck_assert_uint_eq(s.m->effects, EFFECT_CONTACT | EFFECT_MESH);
-  text_model_close(&s);
 }
-END_TEST
 
 /* Of a step, or of the last of two: held at rest, moved, let go, taken later.
  */
-START_TEST(supports_that_move_are_found) {
+TEST(supports_that_move_are_found) {
   static const struct {
     const char *first, *last;
     int moves;
@@ -271,66 +252,57 @@ START_TEST(supports_that_move_are_found) {
                {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY, OP=NEW\n", 1},
                {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY\nLEFT, 1\n", 1}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    char text[1000];
-    text_model s;
-    snprintf(text, sizeof text,
-             HEAD
-             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-             "*STEP\n*STATIC\n%s*END STEP\n*STEP\n*STATIC\n%s*END STEP\n",
-             cases[k].first, cases[k].last);
+    TEXT_MODEL s;
+    PRINTED(text,
+            HEAD
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*STEP\n*STATIC\n%s*END STEP\n*STEP\n*STATIC\n%s*END STEP\n",
+            cases[k].first, cases[k].last);
     text_model_read(&s, text, square());
     ck_assert_int_eq(s.st, OK);
     ck_assert_msg((facts_moving_support(s.m) != NULL) == cases[k].moves, "%s",
                   text);
-    text_model_close(&s);
   }
 }
-END_TEST
 
 /* xx yy zz xy yz zx. */
-START_TEST(initial_strains_have_the_components_of_the_space) {
+TEST(initial_strains_have_the_components_of_the_space) {
   for (int c = 0; c <= 7; ++c) {
-    char text[1000];
-    text_model s;
-    snprintf(text, sizeof text,
-             HEAD
-             "*INELASTIC, LAW=MAXWELL\n2.\n"
-             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-             "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, %d, 1.E-3\n"
-             "*STEP\n*VISCO, INTEGRATOR=RK4\n0.5, 1.\n*BOUNDARY\nTOP, 1, "
-             "3\n*END STEP\n",
-             c);
+    TEXT_MODEL s;
+    PRINTED(text,
+            HEAD
+            "*INELASTIC, LAW=MAXWELL\n2.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, %d, 1.E-3\n"
+            "*STEP\n*VISCO, INTEGRATOR=RK4\n0.5, 1.\n*BOUNDARY\nTOP, 1, "
+            "3\n*END STEP\n",
+            c);
     text_model_read(&s, text, box());
     ck_assert_int_eq(s.st, c >= 1 && c <= 6 ? OK : ERR_DECK);
-    text_model_close(&s);
   }
 }
-END_TEST
 
 /* A static step keeps the strains that a body starts with; it has none else. */
-START_TEST(strains_of_the_start_need_a_value) {
+TEST(strains_of_the_start_need_a_value) {
   static const char *const cards[] = {
       "", "*INITIAL CONDITIONS, TYPE=INTERNAL\nBODY, 1, 1.E-3\n"};
   for (int k = 0; k < 2; ++k) {
-    char text[1000];
-    text_model s;
-    snprintf(text, sizeof text,
-             HEAD
-             "*INELASTIC, LAW=KELVIN\n500., 3.\n"
-             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-             "%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*END STEP\n",
-             cards[k]);
+    TEXT_MODEL s;
+    PRINTED(text,
+            HEAD
+            "*INELASTIC, LAW=KELVIN\n500., 3.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*END STEP\n",
+            cards[k]);
     text_model_read(&s, text, square());
     ck_assert_int_eq(s.st, OK);
     ck_assert_int_eq(facts_has_inelastic(s.m), k);
-    text_model_close(&s);
   }
 }
-END_TEST
 
 /* Zones of a body and some of its elements, whose temperatures are those of one
  * expression or not. */
-START_TEST(zones_have_one_temperature) {
+TEST(zones_have_one_temperature) {
   static const struct {
     const char *initial, *heat;
     int n;
@@ -344,35 +316,32 @@ START_TEST(zones_have_one_temperature) {
                {"BODY, 5.\nLEFT, 6.\n", "BODY, 20.\n", 2},
                {"BODY, 5.\nLEFT, 6.\n", "BODY, 20.\nLEFT, 7.\n", 2}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    char text[1000];
-    text_model s;
+    TEXT_MODEL s;
     mesh *msh = square();
     int zone[12], others = 0;
     ck_assert_int_eq(msh->n_elem, 12);
     for (int i = 0; i < msh->n_group; ++i)
       if (strcmp(msh->group[i].name, "LEFT") == 0) msh->group[i].dim = 2;
-    snprintf(text, sizeof text,
-             HEAD
-             "*EXPANSION\n1E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-             "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n"
-             "*AMPLITUDE, NAME=B\n0., 0., 1., 0.5\n"
-             "%s%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n"
-             "*TEMPERATURE\n%s*END STEP\n",
-             cases[k].initial[0] != '\0'
-                 ? "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
-                 : "",
-             cases[k].initial, cases[k].heat);
+    PRINTED(text,
+            HEAD
+            "*EXPANSION\n1E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n"
+            "*AMPLITUDE, NAME=B\n0., 0., 1., 0.5\n"
+            "%s%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n"
+            "*TEMPERATURE\n%s*END STEP\n",
+            cases[k].initial[0] != '\0'
+                ? "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
+                : "",
+            cases[k].initial, cases[k].heat);
     text_model_read(&s, text, msh);
     ck_assert_int_eq(s.st, OK);
     ck_assert_int_eq(load_temperature_zones(s.m, s.msh, zone), OK);
     for (int i = 0; i < 12; ++i) others |= zone[i] != zone[0];
     ck_assert_msg(1 + others == cases[k].n, "%s", cases[k].heat);
-    text_model_close(&s);
   }
 }
-END_TEST
 
-START_TEST(every_refused_request_is_reported) {
+TEST(every_refused_request_is_reported) {
   static const char text[] = HEAD
       "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
       "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n"
@@ -382,7 +351,7 @@ START_TEST(every_refused_request_is_reported) {
       "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*DSLOAD\nRIGHT, P, 1., A\n"
       "*SOLVER, METHOD=SOR\n*PRINT, CONTACT, NODES\n*END STEP\n"
       "*STEP\n*STATIC\n*END STEP\n";
-  text_model s;
+  TEXT_MODEL s;
   text_model_read(&s, text, square());
   ck_assert_int_eq(s.st, OK);
   memory_free(s.m);
@@ -402,15 +371,6 @@ START_TEST(every_refused_request_is_reported) {
   s.m = NULL;
   ck_assert_int_gt(refused, 10);
   ck_assert_uint_le(memory_in_use(), before + 64);
-  text_model_close(&s);
 }
-END_TEST
 
-UNIT_MAIN("model", resultant_is_the_integral_of_the_load,
-          loads_ramp_stay_change_and_end,
-          expressions_have_the_coordinates_of_the_section,
-          echo_reads_back_to_the_same_echo, directions_have_unit_length,
-          effects_are_what_the_deck_calls_for, supports_that_move_are_found,
-          initial_strains_have_the_components_of_the_space,
-          strains_of_the_start_need_a_value, zones_have_one_temperature,
-          every_refused_request_is_reported)
+UNIT_MAIN("model")

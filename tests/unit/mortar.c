@@ -1,6 +1,5 @@
 /* src/contact/mortar: coupling of two surfaces. Expected values: closed forms,
  * properties of the method, and quadrature and polygons made here. */
-#include "base/base.h"
 #include "support/two_surfaces.h"
 #include "support/unit.h"
 
@@ -72,7 +71,7 @@ static void check_resultant(const pair *p, const mortar *m) {
  * the area is without that of neighbours. */
 static void check_forces(const pair *p, const mortar *m, int first_master) {
   const int dim = p->m.dim;
-  double *force = calloc((size_t)p->m.n_node, sizeof *force);
+  FREED double *force = calloc((size_t)p->m.n_node, sizeof *force);
   for (int q = 0; q < m->n; ++q)
     for (size_t e = m->to.start[q]; e < m->to.start[q + 1]; ++e)
       force[m->to.master[e]] +=
@@ -83,7 +82,6 @@ static void check_forces(const pair *p, const mortar *m, int first_master) {
           face_area(p, p->master[i]) / dim;
   for (int i = first_master; i < p->m.n_node; ++i)
     ck_assert_double_eq_tol(force[i], 0, 1e-14);
-  free(force);
   check_resultant(p, m);
 }
 
@@ -99,17 +97,18 @@ static pair plane_pair(int dim, int n_slave, int n_master, double jitter) {
   return p;
 }
 
-START_TEST(planes_reproduce_linear_fields_and_constant_pressure) {
+TEST(planes_reproduce_linear_fields_and_constant_pressure) {
   static const int sizes[][2] = {{1, 1}, {3, 31}, {5, 7},
                                  {8, 8}, {16, 9}, {12, 13}};
   for (int dim = 2; dim <= 3; ++dim)
     for (int s = 0; s < 6; ++s)
       for (int turn = 0; turn < 8; ++turn) {
-        pair p = plane_pair(dim, sizes[s][0], sizes[s][1], turn % 2 ? 0.4 : 0);
+        OWN_PAIR p =
+            plane_pair(dim, sizes[s][0], sizes[s][1], turn % 2 ? 0.4 : 0);
         double R[9], by[3] = {0.3 * turn, -0.2, 0.1};
         rotation(R, 0.9 * turn, 0.5 * turn, dim);
         move(&p, R, by);
-        mortar *m = two_couple(&p);
+        OWNED mortar *m = two_couple(&p);
         ck_assert_int_eq(m->n, dim == 2
                                    ? sizes[s][0] + 1
                                    : (sizes[s][0] + 1) * (sizes[s][0] + 1));
@@ -117,11 +116,8 @@ START_TEST(planes_reproduce_linear_fields_and_constant_pressure) {
         ck_assert_double_eq_tol(m->covered, 1, 1e-13);
         check_rows(&p, m, 1e-13);
         check_forces(&p, m, 0);
-        memory_free(m);
-        two_free(&p);
       }
 }
-END_TEST
 
 /* ---- rows ---------------------------------------------------------------- */
 
@@ -134,12 +130,12 @@ static double part_of(const mortar *m, int node, int master) {
 }
 
 /* One slave edge on two masters: psi = 2 - 3 s and 3 s - 1. */
-START_TEST(an_edge_on_two_has_the_parts_of_the_closed_form) {
-  pair p = two_new(2);
+TEST(an_edge_on_two_has_the_parts_of_the_closed_form) {
+  OWN_PAIR p = two_new(2);
   two_add_line(&p, 1, 1, 0, 1, 0);
   two_add_line(&p, 0, 2, 0, 1, 0);
   for (int i = 2; i < 5; ++i) p.m.x[2 * i + 1] = -0.25; /* the gap */
-  mortar *m = two_couple(&p);
+  OWNED mortar *m = two_couple(&p);
   const double expected[2][3] = {{0.75, 0.5, -0.25}, {-0.25, 0.5, 0.75}};
   ck_assert_int_eq(m->n, 2);
   for (int j = 0; j < 2; ++j) {
@@ -155,24 +151,21 @@ START_TEST(an_edge_on_two_has_the_parts_of_the_closed_form) {
     }
   }
   ck_assert_double_eq_tol(m->size_ratio, 0.5, 1e-15);
-  memory_free(m);
-  two_free(&p);
 }
-END_TEST
 
 /* Force of a constant pressure on the ring a..b: 2 pi int r phi. */
 static double ring_force(double a, double b) {
   return 2 * acos(-1.0) * fabs(b - a) * (2 * a + b) / 6;
 }
 
-START_TEST(axisymmetric_faces_are_weighted_with_the_radius) {
+TEST(axisymmetric_faces_are_weighted_with_the_radius) {
   const double pi = acos(-1.0);
-  pair p = two_new(2);
+  OWN_PAIR p = two_new(2);
   two_add_line(&p, 1, 4, 0, 2, 0.5); /* from the axis */
   two_add_line(&p, 0, 7, 0, 2, 0.5);
   p.in.axisymmetric = 1;
-  mortar *m = two_couple(&p);
-  double *force = calloc((size_t)p.m.n_node, sizeof *force);
+  OWNED mortar *m = two_couple(&p);
+  FREED double *force = calloc((size_t)p.m.n_node, sizeof *force);
   ck_assert_int_eq(m->n, 5);
   ck_assert_double_eq_tol(area_sum(m), 4 * pi, 1e-13);
   ck_assert_double_eq_tol(m->area[0], ring_force(0, p.m.x[2]), 1e-14);
@@ -186,50 +179,38 @@ START_TEST(axisymmetric_faces_are_weighted_with_the_radius) {
                             (i < 12 ? ring_force(r, p.m.x[2 * i + 2]) : 0);
     ck_assert_double_eq_tol(force[i], expected, 1e-13);
   }
-  free(force);
-  memory_free(m);
-  two_free(&p);
 }
-END_TEST
 
-START_TEST(thickness_weighs_areas_and_not_parts) {
-  pair p = plane_pair(2, 3, 4, 0), t = plane_pair(2, 3, 4, 0);
+TEST(thickness_weighs_areas_and_not_parts) {
+  OWN_PAIR p = plane_pair(2, 3, 4, 0), t = plane_pair(2, 3, 4, 0);
   for (int i = 0; i < 7; ++i) t.weight[i] = 2.5;
-  mortar *a = two_couple(&p), *b = two_couple(&t);
+  OWNED mortar *a = two_couple(&p), *b = two_couple(&t);
   ck_assert_int_eq(a->n, b->n);
   for (int q = 0; q < a->n; ++q)
     ck_assert_double_eq_tol(b->area[q], 2.5 * a->area[q], 1e-15);
   for (size_t e = 0; e < a->to.start[a->n]; ++e)
     ck_assert_double_eq_tol(a->to.part[2 * e], b->to.part[2 * e], 1e-15);
-  memory_free(a);
-  memory_free(b);
-  two_free(&p);
-  two_free(&t);
 }
-END_TEST
 
 /* A slave of thickness 2 on masters of 1 and 3: 1 on the left half, 2 on the
  * right one, at the face across the step too; whole where it is covered. */
-START_TEST(bodies_touch_over_the_smaller_thickness) {
+TEST(bodies_touch_over_the_smaller_thickness) {
   for (int n = 2; n <= 5; ++n) {
-    pair p = two_new(2);
+    OWN_PAIR p = two_new(2);
     two_add_line(&p, 1, n, 0, 1, 0);
     two_add_line(&p, 0, 2, 0, 1, 0);
     for (int k = 0; k < p.m.n_face; ++k) p.weight[k] = 2;
     p.weight[p.master[0]] = 1;
     p.weight[p.master[1]] = 3;
-    mortar *m = two_couple(&p);
+    OWNED mortar *m = two_couple(&p);
     const int low = m->area[0] < m->area[n] ? 0 : n;
     ck_assert_double_eq_tol(area_sum(m), 0.5 * 1 + 0.5 * 2, 1e-13);
     ck_assert_double_eq_tol(m->area[low], 1 * 0.5 / n, 1e-13);
     ck_assert_double_eq_tol(m->area[n - low], 2 * 0.5 / n, 1e-13);
     for (int q = 0; q <= n && n % 2 == 0; ++q)
       ck_assert_double_eq_tol(m->whole[q], m->area[q], 1e-13);
-    memory_free(m);
-    two_free(&p);
   }
 }
-END_TEST
 
 /* ---- nodes without multiplier -------------------------------------------- */
 
@@ -237,7 +218,7 @@ END_TEST
  * from..to, whatever nodes are left out there. */
 static void check_line_forces(const pair *p, const mortar *m, double from,
                               double to) {
-  double *force = calloc((size_t)p->m.n_node, sizeof *force);
+  FREED double *force = calloc((size_t)p->m.n_node, sizeof *force);
   for (int q = 0; q < m->n; ++q)
     for (size_t e = m->to.start[q]; e < m->to.start[q + 1]; ++e)
       force[m->to.master[e]] += m->area[q] / m->share[q] * m->to.part[2 * e];
@@ -253,7 +234,6 @@ static void check_line_forces(const pair *p, const mortar *m, double from,
   for (int i = 0; i < p->in.n_master; ++i)
     for (int k = 0; k < 2; ++k)
       ck_assert_double_eq_tol(force[p->m.face[2 * p->master[i] + k]], 0, 1e-14);
-  free(force);
 }
 
 /* Slave edges of 0.2 on 0..1, masters from -1 to "end". */
@@ -264,9 +244,9 @@ static pair overhanging(double end) {
   return p;
 }
 
-START_TEST(nodes_of_partly_covered_edges_have_the_covered_area) {
-  pair p = overhanging(0.5); /* the third edge by half */
-  mortar *m = two_couple(&p);
+TEST(nodes_of_partly_covered_edges_have_the_covered_area) {
+  OWN_PAIR p = overhanging(0.5); /* the third edge by half */
+  OWNED mortar *m = two_couple(&p);
   const double area[4] = {0.1, 0.2, 0.1 + 0.075, 0.025};
   ck_assert_int_eq(m->n, 4);
   for (int q = 0; q < 4; ++q) {
@@ -278,17 +258,14 @@ START_TEST(nodes_of_partly_covered_edges_have_the_covered_area) {
   ck_assert_double_eq_tol(m->covered, 0.5, 1e-15);
   check_rows(&p, m, 1e-14);
   check_line_forces(&p, m, 0, 0.5);
-  memory_free(m);
-  two_free(&p);
 }
-END_TEST
 
 /* Node 3 at 0.6 has 0.5 s^2/0.2 of the covered 0.4..0.4+s, of 0.2. */
-START_TEST(nodes_covered_by_less_than_a_hundredth_are_left_out) {
+TEST(nodes_covered_by_less_than_a_hundredth_are_left_out) {
   const double limit = sqrt(2 * 0.2 * 0.01 * 0.2);
   for (int above = 0; above < 2; ++above) {
-    pair p = overhanging(0.4 + limit * (above ? 1.01 : 0.99));
-    mortar *m = two_couple(&p);
+    OWN_PAIR p = overhanging(0.4 + limit * (above ? 1.01 : 0.99));
+    OWNED mortar *m = two_couple(&p);
     ck_assert_int_eq(m->n, above ? 4 : 3);
     ck_assert_int_eq(m->n_scant, !above);
     ck_assert_int_eq(m->n_uncovered, 2);
@@ -304,16 +281,13 @@ START_TEST(nodes_covered_by_less_than_a_hundredth_are_left_out) {
     }
     ck_assert_double_eq_tol(m->size_ratio, masters / (0.2 * p.m.x[2 * 15]),
                             1e-12);
-    memory_free(m);
-    two_free(&p);
   }
 }
-END_TEST
 
 /* With one end dropped the other has psi = 1 on the last edge: its pressure is
  * constant there. P to the dropped node: - int phi_z. */
-START_TEST(dropped_nodes_leave_their_part_to_the_neighbours) {
-  pair p = two_new(2);
+TEST(dropped_nodes_leave_their_part_to_the_neighbours) {
+  OWN_PAIR p = two_new(2);
   two_add_line(&p, 1, 2, 0, 2, 0);
   two_add_line(&p, 0, 3, 0, 2, 0.5);
   p.dropped[2] = p.dropped[4] = 1; /* a master is not concerned */
@@ -334,36 +308,31 @@ START_TEST(dropped_nodes_leave_their_part_to_the_neighbours) {
   ck_assert_int_eq(m->n_bare, 2);
   ck_assert_double_eq_tol(m->covered, 2, 1e-15);
   memory_free(m);
-  two_free(&p);
 }
-END_TEST
 
-START_TEST(dropped_nodes_in_space_keep_linear_fields_and_forces) {
+TEST(dropped_nodes_in_space_keep_linear_fields_and_forces) {
   for (int t = 0; t < 8; ++t) {
-    pair p = plane_pair(3, 4, 5, 0.4);
+    OWN_PAIR p = plane_pair(3, 4, 5, 0.4);
     double R[9];
     rotation(R, t, 0.4 * t, 3);
     move(&p, R, (double[]){0, 0, 0});
     int n = 0;
     for (int i = 0; i < 25; ++i) n += p.dropped[i] = two_noise() > 0.1;
-    mortar *m = two_couple(&p);
+    OWNED mortar *m = two_couple(&p);
     ck_assert_int_eq(m->n, 25 - n);
     ck_assert_int_eq(m->n_dropped, n);
     check_rows(&p, m, 1e-13);
     if (m->n_bare == 0) check_forces(&p, m, 25);
-    memory_free(m);
-    two_free(&p);
   }
 }
-END_TEST
 
 /* ---- lips, tips ---------------------------------------------------------- */
 
 /* Lips on y = 0 from 0 to 1 whose nodes coincide; they meet at both tips. */
-START_TEST(matching_lips_move_with_their_copies) {
+TEST(matching_lips_move_with_their_copies) {
   enum { N = 9 };
   for (int t = 0; t < 5; ++t) {
-    pair p = two_new(2);
+    OWN_PAIR p = two_new(2);
     double R[9];
     two_seed(5);
     two_add_line(&p, 1, N, 0, 1, 0.5);
@@ -375,7 +344,7 @@ START_TEST(matching_lips_move_with_their_copies) {
     }
     rotation(R, 0.7 * t, 0, 2);
     move(&p, R, (double[]){10.0 * t, 3, 0});
-    mortar *m = two_couple(&p);
+    OWNED mortar *m = two_couple(&p);
     ck_assert_int_eq(m->n, N - 1);
     ck_assert_int_eq(m->n_dropped, 2);
     for (int q = 0; q < m->n; ++q) {
@@ -383,11 +352,8 @@ START_TEST(matching_lips_move_with_their_copies) {
       ck_assert_int_eq(m->to.master[q], m->node_id[q] + N + 1);
       ck_assert_double_eq_tol(m->to.part[2 * q], 1, 1e-13);
     }
-    memory_free(m);
-    two_free(&p);
   }
 }
-END_TEST
 
 /* ---- curved surfaces ----------------------------------------------------- */
 
@@ -420,16 +386,16 @@ static double largest_gap(const mortar *m) {
 
 /* Two meshes of one curve have no gap where their faces are h^2/8R apart; those
  * of two planes none at all. */
-START_TEST(gaps_are_those_of_the_curve) {
+TEST(gaps_are_those_of_the_curve) {
   static const int size[][2] = {{8, 12}, {4, 8}, {4, 8}, {2, 4}};
   for (int dim = 2; dim <= 3; ++dim)
     for (int kinked = 0; kinked < 6 - dim; ++kinked)
       for (int flat = 0; flat < 2; ++flat) {
-        pair p = plane_pair(dim, size[kinked][0], size[kinked][1],
-                            dim == 2 && !kinked ? 0.3 : 0);
+        OWN_PAIR p = plane_pair(dim, size[kinked][0], size[kinked][1],
+                                dim == 2 && !kinked ? 0.3 : 0);
         bend(&p, kinked);
         p.in.flat = flat;
-        mortar *m = two_couple(&p);
+        OWNED mortar *m = two_couple(&p);
         const double apart = largest_gap(m), facets = 1.0 / 64 / 16;
         if (kinked)
           ck_assert_double_le(apart, 1e-14);
@@ -437,27 +403,23 @@ START_TEST(gaps_are_those_of_the_curve) {
           ck_assert_double_ge(apart, 0.2 * facets);
         else
           ck_assert_double_le(apart, 0.02 * facets);
-        memory_free(m);
-        two_free(&p);
       }
 }
-END_TEST
 
 static double gap_of(pair *p, int q, int flat) {
   p->in.flat = flat;
-  mortar *m = two_couple(p);
+  OWNED mortar *m = two_couple(p);
   const int dim = m->to.dim;
   double gap = 0;
   for (int c = 0; c < dim; ++c)
     gap += m->gap[dim * q + c] * m->normal[dim * q + c];
-  memory_free(m);
   return gap;
 }
 
 /* s = h^2/8R is the height of an arc over its edge from the axis, a part t
  * along it 4 s t (1 - t), and psi = 3 - 4 t of the node on the axis: its mean
  * with the radius is 6/5 s. */
-START_TEST(arc_at_the_axis_has_the_mean_of_the_closed_form) {
+TEST(arc_at_the_axis_has_the_mean_of_the_closed_form) {
   const double h = 1.0 / 8, R = 2;
   pair p = two_new(2);
   two_add_line(&p, 1, 8, 0, 1, 0);
@@ -468,7 +430,6 @@ START_TEST(arc_at_the_axis_has_the_mean_of_the_closed_form) {
   ck_assert_double_eq_tol(beyond / (h * h / 8 / R), 1.2, 0.01);
   two_free(&p);
 }
-END_TEST
 
 static void turn_corners(pair *p) {
   for (int f = 0; f < p->in.n_slave + p->in.n_master; ++f) {
@@ -480,17 +441,15 @@ static void turn_corners(pair *p) {
 }
 
 /* But for the quadrature of curves that are no polynomials over a face. */
-START_TEST(gaps_of_a_sphere_do_not_hang_on_the_order_of_corners) {
-  pair p = plane_pair(3, 3, 5, 0.3);
+TEST(gaps_of_a_sphere_do_not_hang_on_the_order_of_corners) {
+  OWN_PAIR p = plane_pair(3, 3, 5, 0.3);
   bend(&p, 0);
   for (int q = 0; q < 16; ++q) {
     const double gap = gap_of(&p, q, 0);
     turn_corners(&p);
     ck_assert_double_eq_tol(gap_of(&p, q, 0), gap, 1e-10);
   }
-  two_free(&p);
 }
-END_TEST
 
 /* The slave is inside of the master. */
 static void add_inside_out(pair *p, int of_slave, int a, int b, int c) {
@@ -532,81 +491,72 @@ static void add_eighth(pair *p, int of_slave, int n, unsigned char *planes) {
 
 /* Nodes in planes of symmetry are fitted as those inside: of a circle, whose
  * curvature is one, as without the planes. */
-START_TEST(gaps_at_planes_of_symmetry_are_those_of_the_whole) {
+TEST(gaps_at_planes_of_symmetry_are_those_of_the_whole) {
   for (int dim = 2; dim <= 3; ++dim) {
-    pair p = two_new(dim);
+    OWN_PAIR p = two_new(dim);
     double apart[2];
     unsigned char planes[400] = {0};
     add_eighth(&p, 1, 8, planes);
     add_eighth(&p, 0, 6, planes);
     for (int known = 0; known < 2; ++known) {
       p.in.mirrored = known ? planes : NULL;
-      mortar *m = two_couple(&p);
+      OWNED mortar *m = two_couple(&p);
       apart[known] = largest_gap(m);
-      memory_free(m);
     }
     ck_assert_double_le(apart[1], (dim == 2 ? 1.01 : 0.4) * apart[0]);
-    two_free(&p);
   }
 }
-END_TEST
 
 /* A coarse mesh of a circle and a fine one, 24 of its faces on each: what is
  * left of h^2/8R, 0.034, is of the next order, alpha^4 with alpha = pi/12 half
  * the angle of a face. */
-START_TEST(gaps_of_a_coarse_circle_are_small_of_the_next_order) {
+TEST(gaps_of_a_coarse_circle_are_small_of_the_next_order) {
   const double next = pow(acos(0) / 6, 4);
   for (int of_slave = 0; of_slave < 2; ++of_slave) {
-    pair p = two_new(2);
+    OWN_PAIR p = two_new(2);
     double mean = 0;
     unsigned char planes[400] = {0};
     add_eighth(&p, 1, of_slave ? 3 : 72, planes);
     add_eighth(&p, 0, of_slave ? 72 : 3, planes);
     p.in.mirrored = planes;
-    mortar *m = two_couple(&p);
+    OWNED mortar *m = two_couple(&p);
     for (int q = 0; q < m->n; ++q)
       mean += dot(2, m->gap + 2 * q, m->normal + 2 * q) / m->n;
     ck_assert_double_le(fabs(mean), 0.03 * next);
     ck_assert_double_le(largest_gap(m), 0.04 * next);
-    memory_free(m);
-    two_free(&p);
   }
 }
-END_TEST
 
 /* ---- normals, places, units ---------------------------------------------- */
 
 /* Slave at an angle to the master: the mean is half way. */
-START_TEST(normals_are_the_mean_of_both_sides_or_those_of_the_slave) {
+TEST(normals_are_the_mean_of_both_sides_or_those_of_the_slave) {
   for (int slave = 0; slave < 2; ++slave) {
-    pair p = plane_pair(2, 4, 6, 0);
+    OWN_PAIR p = plane_pair(2, 4, 6, 0);
     const double angle = 0.1;
     for (int i = 0; i < 5; ++i) p.m.x[2 * i + 1] = tan(angle) * p.m.x[2 * i];
     p.in.slave_normal = slave;
-    mortar *m = two_couple(&p);
+    OWNED mortar *m = two_couple(&p);
     ck_assert_int_eq(m->n, 5);
     for (int q = 0; q < m->n; ++q) {
       const double a = slave ? angle : angle / 2;
       ck_assert_double_eq_tol(m->normal[2 * q], sin(a), 1e-14);
       ck_assert_double_eq_tol(m->normal[2 * q + 1], -cos(a), 1e-14);
     }
-    memory_free(m);
-    two_free(&p);
   }
 }
-END_TEST
 
 /* The normal of a node left out is, among the masters, the opposite of its own:
  * with P = -1 for it, the sum is twice the normal of the others and that of the
  * slave. */
-START_TEST(normals_beside_a_node_left_out_are_the_mean_too) {
+TEST(normals_beside_a_node_left_out_are_the_mean_too) {
   const double angle = 0.2, s[2] = {sin(angle), -cos(angle)};
-  pair p = two_new(2);
+  OWN_PAIR p = two_new(2);
   two_add_line(&p, 1, 1, 0, 1, 0);
   two_add_line(&p, 0, 1, -0.5, 1.5, 0);
   p.m.x[3] = tan(angle); /* the right end of the slave */
   p.dropped[1] = 1;
-  mortar *m = two_couple(&p);
+  OWNED mortar *m = two_couple(&p);
   ck_assert_int_eq(m->n, 1);
   const double z = part_of(m, 0, 1);
   const double other[2] = {-z * s[0], 1 - z - z * s[1]};
@@ -615,47 +565,38 @@ START_TEST(normals_beside_a_node_left_out_are_the_mean_too) {
   ck_assert_double_eq_tol(z, -1, 1e-14);
   for (int c = 0; c < 2; ++c)
     ck_assert_double_eq_tol(m->normal[c], n[c] / hypot(n[0], n[1]), 1e-14);
-  memory_free(m);
-  two_free(&p);
 }
-END_TEST
 
 /* Where the coordinates are a million sizes of the faces, and those of both
  * sides differ in the last digit, small parts are rounding; without them a row
  * is that of the copy alone, and 1. */
-START_TEST(rows_sum_to_one_far_from_the_origin) {
+TEST(rows_sum_to_one_far_from_the_origin) {
   for (int dim = 2; dim <= 3; ++dim) {
-    pair p = plane_pair(dim, 8, 8, 0);
+    OWN_PAIR p = plane_pair(dim, 8, 8, 0);
     double R[9], by[3] = {1e5, -2e5, 1.5e5};
     rotation(R, 0.7, 0.3, dim);
     move(&p, R, by);
     for (int i = dim * p.m.n_node / 2; i < dim * p.m.n_node; ++i)
       p.m.x[i] = nextafter(p.m.x[i], i % 3 == 0 ? HUGE_VAL : -HUGE_VAL);
-    mortar *m = two_couple(&p);
+    OWNED mortar *m = two_couple(&p);
     ck_assert_int_eq(m->n, dim == 2 ? 9 : 81);
     for (int q = 0; q < m->n; ++q) {
       ck_assert_uint_eq(m->to.start[q + 1] - m->to.start[q], 1);
       ck_assert_double_eq_tol(two_part_sum(m, q), 1, 1e-14);
     }
-    memory_free(m);
-    two_free(&p);
   }
 }
-END_TEST
 
 /* The mean of a master face is three slave faces long, whatever the unit. */
-START_TEST(ratio_of_the_sizes_has_no_unit) {
+TEST(ratio_of_the_sizes_has_no_unit) {
   for (int k = 0; k < 2; ++k) {
-    pair p = two_new(2);
+    OWN_PAIR p = two_new(2);
     two_add_line(&p, 1, 6, 0, k ? 1e3 : 1, 0);
     two_add_line(&p, 0, 2, 0, k ? 1e3 : 1, 0);
-    mortar *m = two_couple(&p);
+    OWNED mortar *m = two_couple(&p);
     ck_assert_double_eq_tol(m->size_ratio, 3, 1e-13);
-    memory_free(m);
-    two_free(&p);
   }
 }
-END_TEST
 
 static void check_same(const mortar *a, const mortar *b, double length,
                        double area) {
@@ -684,77 +625,37 @@ static pair bowls(void) {
   return p;
 }
 
-START_TEST(units_change_nothing) {
+TEST(units_change_nothing) {
   static const double units[] = {1e-9, 1e9, 25.4};
-  pair p = bowls();
-  mortar *a = two_couple(&p);
+  OWN_PAIR p = bowls();
+  OWNED mortar *a = two_couple(&p);
   for (int k = 0; k < 3; ++k) {
-    pair s = bowls();
+    OWN_PAIR s = bowls();
     memcpy(s.m.x, p.m.x, (size_t)(3 * p.m.n_node) * sizeof *s.m.x);
     for (int i = 0; i < 3 * s.m.n_node; ++i) s.m.x[i] *= units[k];
-    mortar *b = two_couple(&s);
+    OWNED mortar *b = two_couple(&s);
     check_same(a, b, units[k], units[k] * units[k]);
-    memory_free(b);
-    two_free(&s);
   }
-  memory_free(a);
-  two_free(&p);
 }
-END_TEST
 
 /* Nodes at displaced places: as if the mesh were there. */
-START_TEST(places_are_those_given) {
-  pair p = bowls();
+TEST(places_are_those_given) {
+  OWN_PAIR p = bowls();
   p.in.flat = 1; /* curves are those of the mesh at rest */
-  double *x = calloc((size_t)(3 * p.m.n_node), sizeof *x);
+  FREED double *x = calloc((size_t)(3 * p.m.n_node), sizeof *x);
   memcpy(x, p.m.x, (size_t)(3 * p.m.n_node) * sizeof *x);
-  mortar *a = two_couple(&p), *b = NULL;
+  OWNED mortar *a = two_couple(&p), *b = NULL;
   memset(p.m.x, 0, (size_t)(3 * p.m.n_node) * sizeof *x);
   p.in.x = x;
   ck_assert_int_eq(mortar_couple(&p.in, &b), OK);
   check_same(a, b, 1, 1);
-  memory_free(a);
-  memory_free(b);
-  free(x);
-  two_free(&p);
 }
-END_TEST
 
-START_TEST(refused_memory_is_an_error_without_leak) {
-  pair p = bowls();
+TEST(refused_memory_is_an_error_without_leak) {
+  OWN_PAIR p = bowls();
   memory_free(two_couple(&p));
-  const size_t before = memory_in_use();
-  const long start = memory_requests();
-  memory_free(two_couple(&p));
-  const long n = memory_requests() - start;
-  for (long k = 1; k <= n; ++k) {
-    mortar *m = NULL;
-    memory_refuse(k, 0);
-    ck_assert_int_eq(mortar_couple(&p.in, &m), ERR_MEMORY);
-    memory_refuse(0, 0);
-    memory_free(m);
-    ck_assert_uint_eq(memory_in_use(), before);
-  }
-  two_free(&p);
+  mortar *m;
+  UNIT_REFUSED(0, mortar_couple(&p.in, &m), memory_free(m));
 }
-END_TEST
 
-UNIT_MAIN("mortar", planes_reproduce_linear_fields_and_constant_pressure,
-          an_edge_on_two_has_the_parts_of_the_closed_form,
-          axisymmetric_faces_are_weighted_with_the_radius,
-          thickness_weighs_areas_and_not_parts,
-          bodies_touch_over_the_smaller_thickness,
-          nodes_of_partly_covered_edges_have_the_covered_area,
-          nodes_covered_by_less_than_a_hundredth_are_left_out,
-          dropped_nodes_leave_their_part_to_the_neighbours,
-          dropped_nodes_in_space_keep_linear_fields_and_forces,
-          matching_lips_move_with_their_copies, gaps_are_those_of_the_curve,
-          arc_at_the_axis_has_the_mean_of_the_closed_form,
-          gaps_of_a_sphere_do_not_hang_on_the_order_of_corners,
-          gaps_at_planes_of_symmetry_are_those_of_the_whole,
-          gaps_of_a_coarse_circle_are_small_of_the_next_order,
-          normals_are_the_mean_of_both_sides_or_those_of_the_slave,
-          normals_beside_a_node_left_out_are_the_mean_too,
-          rows_sum_to_one_far_from_the_origin, ratio_of_the_sizes_has_no_unit,
-          units_change_nothing, places_are_those_given,
-          refused_memory_is_an_error_without_leak)
+UNIT_MAIN("mortar")

@@ -1,6 +1,5 @@
 /* src/contact/mortar: polygons in common and the dual basis. Expected values:
  * closed forms, counted points, and the conditions that define the basis. */
-#include "base/base.h"
 #include "contact/mortar/clip.h"
 #include "support/unit.h"
 
@@ -25,7 +24,7 @@ static double measure_of(int n, const cell *c) {
   return sum;
 }
 
-START_TEST(common_part_of_triangles_is_that_of_closed_forms) {
+TEST(common_part_of_triangles_is_that_of_closed_forms) {
   const double h = sqrt(3.0) / 2;
   const cell up = {{{-0.5, -h / 3}, {0.5, -h / 3}, {0, 2 * h / 3}}};
   const cell down = {{{-0.5, h / 3}, {0.5, h / 3}, {0, -2 * h / 3}}};
@@ -51,11 +50,10 @@ START_TEST(common_part_of_triangles_is_that_of_closed_forms) {
   n = cell_without(3, &unit, &away, c);
   ck_assert_double_eq_tol(measure_of(n, c), 0.5, 1e-15);
 }
-END_TEST
 
 /* What of 0..4, in either direction, another segment leaves: one end, both, all
  * or nothing. */
-START_TEST(common_part_of_segments_is_between_their_ends) {
+TEST(common_part_of_segments_is_between_their_ends) {
   static const struct {
     double at[2], rest[2][2]; /* ends of both rests; no length: none */
   } rows[] = {{{1, 2}, {{0, 1}, {2, 4}}},  {{3, 1}, {{0, 1}, {3, 4}}},
@@ -84,11 +82,10 @@ START_TEST(common_part_of_segments_is_between_their_ends) {
       if (n_both > 0) ck_assert_double_eq(cell_measure(2, both), 4 - left);
     }
 }
-END_TEST
 
 /* Points of a fine grid, counted: the error of the area is below the length of
  * the outline times the spacing. */
-START_TEST(common_part_of_triangles_is_what_is_inside_both) {
+TEST(common_part_of_triangles_is_what_is_inside_both) {
   enum { GRID = 200 };
   for (int t = 0; t < 40; ++t) {
     cell a, b, both[CLIP_CELLS], rest[CLIP_REST];
@@ -120,7 +117,6 @@ START_TEST(common_part_of_triangles_is_what_is_inside_both) {
                             cell_measure(3, &a), 1e-15);
   }
 }
-END_TEST
 
 /* ---- dual basis ---------------------------------------------------------- */
 
@@ -166,7 +162,7 @@ static void check_dual(int dim, const int *kept, int n, const sample *p,
     }
 }
 
-START_TEST(dual_functions_are_biorthogonal_and_sum_to_one) {
+TEST(dual_functions_are_biorthogonal_and_sum_to_one) {
   static const cell segment = {{{0, 0}, {1, 0}, {0, 0}}};
   static const cell triangle = {{{0, 0}, {1, 0}, {0.2, 0.9}}};
   for (int dim = 2; dim <= 3; ++dim)
@@ -184,9 +180,5 @@ START_TEST(dual_functions_are_biorthogonal_and_sum_to_one) {
         check_dual(dim, kept, n, p, d, 1e-14 / size);
       }
 }
-END_TEST
 
-UNIT_MAIN("mortar_face", common_part_of_segments_is_between_their_ends,
-          common_part_of_triangles_is_that_of_closed_forms,
-          common_part_of_triangles_is_what_is_inside_both,
-          dual_functions_are_biorthogonal_and_sum_to_one)
+UNIT_MAIN("mortar_face")

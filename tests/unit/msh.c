@@ -1,11 +1,8 @@
 /* src/mesh: the reader of .msh files takes what the format says and no more */
-#include "base/base.h"
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/msh/scan.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
-
-#include <stdint.h>
 
 /* A unit square of two triangles, its lower side and a corner, twice. */
 static const char text_22[] =
@@ -138,10 +135,10 @@ static void variant(int i, bytes *b) {
   }
 }
 
-START_TEST(all_variants_give_the_same_mesh) {
-  mesh_file f;
+TEST(all_variants_give_the_same_mesh) {
+  MESH_FILE f;
   bytes b;
-  mesh *first = NULL;
+  OWNED mesh *first = NULL;
   const char *what;
   mesh_file_open(&f);
   for (int i = 0; i < 6; ++i) {
@@ -156,14 +153,11 @@ START_TEST(all_variants_give_the_same_mesh) {
     ck_assert_msg(mesh_same(first, m, 0.0, &what), "%d: %s", i, what);
     if (m != first) memory_free(m);
   }
-  memory_free(first);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* The last byte is a newline, the only one that may be lost. */
-START_TEST(file_cut_anywhere_is_refused) {
-  mesh_file f;
+TEST(file_cut_anywhere_is_refused) {
+  MESH_FILE f;
   bytes b;
   mesh_file_open(&f);
   for (int i = 0; i < 6; ++i) {
@@ -175,14 +169,12 @@ START_TEST(file_cut_anywhere_is_refused) {
                     cut, f.messages);
     }
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Each line left out, then each twice; and each word in the last lines of the
  * nodes shortened to nothing by its line. */
-START_TEST(file_without_a_line_or_with_one_twice_is_refused) {
-  mesh_file f;
+TEST(file_without_a_line_or_with_one_twice_is_refused) {
+  MESH_FILE f;
   mesh_file_open(&f);
   for (int i = 0; i < 2; ++i)
     for (const char *p = texts[i], *q; *p != '\0'; p = q) {
@@ -198,37 +190,32 @@ START_TEST(file_without_a_line_or_with_one_twice_is_refused) {
                       "%d: %d: %.*s", i, twice, (int)(q - p), p);
       }
     }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Each word in the place of every number of the file: no large block of
  * memory, whatever it says. */
-START_TEST(counts_are_compared_with_the_file_first) {
+TEST(counts_are_compared_with_the_file_first) {
   static const char *const word[] = {"999999999", "2305843009213693952",
                                      "9223372036854775807", "-1", "1e9"};
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   for (int i = 0; i < 2; ++i)
     for (size_t at = 0; texts[i][at] != '\0'; ++at) {
       if (at == 0 || strchr(" \n", texts[i][at - 1]) == NULL) continue;
       size_t n = strcspn(texts[i] + at, " \n");
       for (size_t k = 0; k < sizeof word / sizeof *word; ++k) {
-        char text[2048];
-        snprintf(text, sizeof text, "%.*s%s%s", (int)at, texts[i], word[k],
-                 texts[i] + at + n);
+        PRINTED(text, "%.*s%s%s", (int)at, texts[i], word[k],
+                texts[i] + at + n);
         size_t before = memory_allocated();
         memory_free(mesh_file_text(&f, "n.msh", text));
         ck_assert_msg(memory_allocated() - before < 200000, "%s", text);
       }
     }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Each byte of the binary files with all bits turned, likewise. */
-START_TEST(damaged_bytes_take_no_memory) {
-  mesh_file f;
+TEST(damaged_bytes_take_no_memory) {
+  MESH_FILE f;
   bytes b;
   mesh_file_open(&f);
   for (int i = 2; i < 6; ++i) {
@@ -242,9 +229,7 @@ START_TEST(damaged_bytes_take_no_memory) {
       b.data[at] = (char)~b.data[at];
     }
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* clang-format off */
 #define DIGITS_40 "1234567890123456789012345678901234567890"
@@ -302,33 +287,30 @@ static const struct { const char *from, *to, *message; } damages[] = {
 };
 /* clang-format on */
 
-START_TEST(damage_is_told_with_its_line) {
-  mesh_file f;
+TEST(damage_is_told_with_its_line) {
+  MESH_FILE f;
   mesh_file_open(&f);
   for (size_t i = 0; i < sizeof damages / sizeof *damages; ++i) {
-    char text[2048], wanted[256];
     const char *whole = text_22, *at = strstr(whole, damages[i].from);
     if (at == NULL) at = strstr(whole = text_41, damages[i].from);
     ck_assert_ptr_nonnull(at);
-    snprintf(text, sizeof text, "%.*s%s%s", (int)(at - whole), whole,
-             damages[i].to, at + strlen(damages[i].from));
+    PRINTED(text, "%.*s%s%s", (int)(at - whole), whole, damages[i].to,
+            at + strlen(damages[i].from));
     const size_t n = strlen(text);
     for (char *c = text; (c = strchr(c, 1)) != NULL;) *c = '\0';
     mesh_file_write(&f, "d.msh", text, n);
     ck_assert_ptr_null(mesh_file_read(&f, "d.msh", 1.0, 0, NULL));
-    snprintf(wanted, sizeof wanted, "P3006: mesh file %s%s",
-             mesh_file_path(&f, "d.msh"), damages[i].message);
+    PRINTED(wanted, "P3006: mesh file %s%s", mesh_file_path(&f, "d.msh"),
+            damages[i].message);
     ck_assert_msg(strstr(f.messages, wanted) != NULL, "wanted %s\ngot %s",
                   wanted, f.messages);
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Other sections, CRLF, comments, empty lines, blanks and a byte order mark
  * change nothing. */
-START_TEST(what_is_no_mesh_is_passed_over) {
-  mesh_file f;
+TEST(what_is_no_mesh_is_passed_over) {
+  MESH_FILE f;
   mesh_file_open(&f);
   char text[4096];
   int n = snprintf(text, sizeof text,
@@ -342,94 +324,78 @@ START_TEST(what_is_no_mesh_is_passed_over) {
     if (text[i] == '\n') crlf[k++] = '\r';
     crlf[k++] = text[i];
   }
-  mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
-  mesh *m = mesh_file_text(&f, "other.msh", text);
+  OWNED mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
+  OWNED mesh *m = mesh_file_text(&f, "other.msh", text);
   ck_assert_msg(m != NULL && f.messages[0] == '\0', "%s", f.messages);
   mesh_file_write(&f, "crlf.msh", crlf, (size_t)k);
-  mesh *dos = mesh_file_read(&f, "crlf.msh", 1.0, 0, NULL);
+  OWNED mesh *dos = mesh_file_read(&f, "crlf.msh", 1.0, 0, NULL);
   ck_assert_msg(dos != NULL && f.messages[0] == '\0', "%s", f.messages);
   const char *what;
   ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
   ck_assert_msg(mesh_same(plain, dos, 0.0, &what), "%s", what);
-  memory_free(plain);
-  memory_free(m);
-  memory_free(dos);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Elements on entities of partitions belong to the groups of those; what parts
  * them, here a point, has the groups of the whole in the file and is in none.
  */
-START_TEST(partitions_have_their_groups) {
+TEST(partitions_have_their_groups) {
   static const char parts[] =
       "$PartitionedEntities\n1\n1\n9 1\n2 1 1 0\n1 0 1 1 1 0 0 0 1 3\n"
       "7 2 5 2 1 2 0 0 0 1 1\n"
       "6 1 6 1 1 0 0 0 1 0 0 1 2 0\n5 2 5 1 1 0 0 0 1 1 0 1 1 1 6\n"
       "$EndPartitionedEntities\n";
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
   char text[4096];
   const char *from = strstr(text_41, "$Entities"),
              *to = strstr(text_41, "$Nodes");
   snprintf(text, sizeof text, "%.*s%s%s", (int)(from - text_41), text_41, parts,
            to);
-  mesh *plain = mesh_file_text(&f, "plain.msh", text_41);
-  mesh *m = mesh_file_text(&f, "parts.msh", text);
+  OWNED mesh *plain = mesh_file_text(&f, "plain.msh", text_41);
+  OWNED mesh *m = mesh_file_text(&f, "parts.msh", text);
   ck_assert_msg(m != NULL, "%s", f.messages);
   const char *what;
   ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
-  memory_free(plain);
-  memory_free(m);
   snprintf(text, sizeof text, "%.*s%s", (int)(from - text_41), text_41, to);
   ck_assert_ptr_null(mesh_file_text(&f, "none.msh", text));
   ck_assert_ptr_nonnull(strstr(f.messages, "the file has no $Entities"));
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* What gmsh -parametric writes: dimension and tag of the entity of a node, and
  * its place there. */
-START_TEST(parameters_of_nodes_are_passed_over) {
-  mesh_file f;
+TEST(parameters_of_nodes_are_passed_over) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  char text[4096];
   const char *what, *from = strstr(text_22, "$Nodes"),
                     *to = strstr(text_22, "$EndNodes");
-  snprintf(text, sizeof text,
-           "%.*s$ParametricNodes\n4\n1 0 0 0 0 1\n2 1 0 0 1 6 0.5\n"
-           "3 1 1 0 2 5 0.5 1\n4 0 1 0 3 1\n$EndParametricNodes%s",
-           (int)(from - text_22), text_22, to + strlen("$EndNodes"));
-  mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
-  mesh *m = mesh_file_text(&f, "places.msh", text);
+  PRINTED(text,
+          "%.*s$ParametricNodes\n4\n1 0 0 0 0 1\n2 1 0 0 1 6 0.5\n"
+          "3 1 1 0 2 5 0.5 1\n4 0 1 0 3 1\n$EndParametricNodes%s",
+          (int)(from - text_22), text_22, to + strlen("$EndNodes"));
+  OWNED mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
+  OWNED mesh *m = mesh_file_text(&f, "places.msh", text);
   ck_assert_msg(m != NULL, "%s", f.messages);
   ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
-  memory_free(plain);
-  memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Tags behind the second are partitions; a group of negative number is that of
  * turned elements; an entity may have several groups. */
-START_TEST(tags_choose_the_groups) {
+TEST(tags_choose_the_groups) {
   static const char tagged[] =
       MSH("3\n0 3 \"P\"\n1 2 \"SIDE\"\n2 1 \"BODY\"\n",
           "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n",
           "4\n7 2 5 1 5 2 3 4 1 2 3\n8 2 5 1 5 2 3 4 1 3 4\n"
           "9 1 4 -2 6 1 3 1 2\n10 15 2 3 1 1\n");
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
+  OWNED mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
   mesh *m = mesh_file_text(&f, "tags.msh", tagged);
   ck_assert_msg(m != NULL, "%s", f.messages);
   const char *what;
   ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
   memory_free(m);
-  char text[4096];
   const char *at = strstr(text_41, "1 -2 0\n");
-  snprintf(text, sizeof text, "%.*s2 -2 3 0\n%s", (int)(at - text_41), text_41,
-           at + 7);
+  PRINTED(text, "%.*s2 -2 3 0\n%s", (int)(at - text_41), text_41, at + 7);
   m = mesh_file_text(&f, "two.msh", text);
   ck_assert_msg(m != NULL, "%s", f.messages);
   int lines = 0;
@@ -438,15 +404,12 @@ START_TEST(tags_choose_the_groups) {
     if (m->group[i].dim == 1) ck_assert_int_eq(m->group[i].n_node, 2);
   }
   ck_assert_int_eq(lines, 2);
-  memory_free(plain);
   memory_free(m);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Correctly rounded, whatever the number of digits; with a sign or without. */
-START_TEST(coordinates_are_the_nearest_doubles) {
-  mesh_file f;
+TEST(coordinates_are_the_nearest_doubles) {
+  MESH_FILE f;
   mesh_file_open(&f);
   unsigned long random = 1;
   char line[65536];
@@ -472,37 +435,17 @@ START_TEST(coordinates_are_the_nearest_doubles) {
     ck_assert_msg(v == wanted[i], "%d: %.17g, not %.17g", i, v, wanted[i]);
   }
   scan_close(&s);
-  mesh_file_close(&f);
 }
-END_TEST
 
-START_TEST(reader_gives_back_all_when_refused) {
-  mesh_file f;
+TEST(reader_gives_back_all_when_refused) {
+  MESH_FILE f;
   mesh_file_open(&f);
   for (int i = 0; i < 2; ++i) {
     mesh_file_write(&f, "m.msh", texts[i], strlen(texts[i]));
-    size_t before = memory_in_use();
-    int k = 1;
-    for (;; ++k) {
-      raw_mesh *raw;
-      memory_refuse(k, 0);
-      status st = msh_read(mesh_file_path(&f, "m.msh"), &raw);
-      memory_refuse(0, 0);
-      memory_free(raw);
-      ck_assert_uint_eq(memory_in_use(), before);
-      if (st == OK) break;
-      ck_assert_int_eq(st, ERR_MEMORY);
-    }
-    ck_assert_int_gt(k, 15);
+    raw_mesh *raw;
+    UNIT_REFUSED(15, msh_read(mesh_file_path(&f, "m.msh"), &raw),
+                 memory_free(raw));
   }
-  mesh_file_close(&f);
 }
-END_TEST
 
-UNIT_MAIN("msh", all_variants_give_the_same_mesh, file_cut_anywhere_is_refused,
-          file_without_a_line_or_with_one_twice_is_refused,
-          counts_are_compared_with_the_file_first, damaged_bytes_take_no_memory,
-          damage_is_told_with_its_line, what_is_no_mesh_is_passed_over,
-          partitions_have_their_groups, parameters_of_nodes_are_passed_over,
-          tags_choose_the_groups, coordinates_are_the_nearest_doubles,
-          reader_gives_back_all_when_refused)
+UNIT_MAIN("msh")

@@ -1,5 +1,4 @@
 /* src/solver/newton: the steps of Newton's method on the states. */
-#include "base/base.h"
 #include "solver/newton/system.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
@@ -30,13 +29,12 @@ static solver_report solve_to(double tol, contact_case *c) {
   double param[8] = {0.0};
   solver_control control = {.tol = tol};
   solver_report rep;
-  void *work = NULL;
+  OWNED void *work = NULL;
   ck_assert(newton_solver.param_size <= sizeof param);
   option_defaults(newton_solver.options, param);
   ck_assert_int_eq(solver_set_up(&newton_solver, &c->cp, param, &work), OK);
   ck_assert_int_eq(
       newton_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
-  memory_free(work);
   return rep;
 }
 
@@ -44,10 +42,10 @@ static solver_report solve(contact_case *c) { return solve_to(1e-12, c); }
 
 /* The force that passes node i is F - (i + 1) g: a node more slips at each
  * step, SLIPPING of them, more than an attempt has steps at first. */
-START_TEST(front_of_slip_is_followed_to_its_end) {
+TEST(front_of_slip_is_followed_to_its_end) {
   for (int dim = 2; dim <= 3; ++dim) {
     double g = 0.5, F = (SLIPPING + 0.5) * g, u = 0.0;
-    contact_case c = pulled_row(dim, F, g);
+    CONTACT_CASE c = pulled_row(dim, F, g);
     solver_report rep = solve(&c);
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_int_gt(rep.iterations, 40);
@@ -58,15 +56,13 @@ START_TEST(front_of_slip_is_followed_to_its_end) {
       ck_assert_double_eq_tol(c.u[i * dim + 1], u, 1e-9 * F);
       ck_assert_double_eq_tol(c.r[i * dim + 1], -T, 1e-10 * F);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* The same state again: nothing to do; a larger pull: the front goes on. */
-START_TEST(front_goes_on_from_where_it_was) {
+TEST(front_goes_on_from_where_it_was) {
   double g = 0.5;
-  contact_case c = pulled_row(2, 20.5 * g, g);
+  CONTACT_CASE c = pulled_row(2, 20.5 * g, g);
   ck_assert_int_eq(solve(&c).outcome, CONVERGED);
   c.f[1] = 23.5 * g;
   solver_report rep = solve(&c);
@@ -74,9 +70,7 @@ START_TEST(front_goes_on_from_where_it_was) {
   ck_assert_int_le(rep.iterations, 5);
   ck_assert_double_eq_tol(c.r[2 * 22 + 1], -g, 1e-12);
   ck_assert_double_eq_tol(c.r[2 * 23 + 1], -0.5 * g, 1e-12);
-  case_free(&c);
 }
-END_TEST
 
 /* The same row by its compliance: node j moves node i through the springs
  * between the farther one and the wall. */
@@ -93,12 +87,12 @@ static void turn_to_compliance(contact_case *c, double *W, double *q) {
   c->cp.f = q;
 }
 
-START_TEST(front_of_slip_is_found_from_the_compliance) {
+TEST(front_of_slip_is_found_from_the_compliance) {
   for (int dim = 2; dim <= 3; ++dim) {
     double g = 0.5, F = (SLIPPING + 0.5) * g;
-    contact_case c = pulled_row(dim, F, g);
-    double *W = calloc((size_t)(c.cp.m * c.cp.m), sizeof *W),
-           *q = calloc((size_t)c.cp.m, sizeof *q);
+    CONTACT_CASE c = pulled_row(dim, F, g);
+    FREED double *W = calloc((size_t)(c.cp.m * c.cp.m), sizeof *W),
+                 *q = calloc((size_t)c.cp.m, sizeof *q);
     turn_to_compliance(&c, W, q);
     solver_report rep = solve(&c);
     ck_assert_int_eq(rep.outcome, CONVERGED);
@@ -107,22 +101,18 @@ START_TEST(front_of_slip_is_found_from_the_compliance) {
       double T = i < SLIPPING ? g : i == SLIPPING ? 0.5 * g : 0.0;
       ck_assert_double_eq_tol(c.r[i * dim + 1], -T, 1e-10 * F);
     }
-    free(W);
-    free(q);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Few nodes in space that yield fifty times more in one tangent than in the
  * other; a solution is planted. What meets a loose tolerance moves as its
  * forces say. */
-START_TEST(nodes_of_uneven_tangents_do_not_cycle) {
+TEST(nodes_of_uneven_tangents_do_not_cycle) {
   static const double size[] = {0.114, 0.327, 0.047};
   unsigned long long seed = 21;
   for (int k = 0; k < 400; ++k) {
     int n = 1 + k % 4, m = 3 * n;
-    contact_case c = case_new(3, n, 0.7);
+    CONTACT_CASE c = case_new(3, n, 0.7);
     double G[144], *r = c.r;
     for (int i = 0; i < m * m; ++i)
       G[i] = size[i / m % 3] * ((i % (m + 1) == 0) + case_random(&seed) - 0.5);
@@ -150,15 +140,13 @@ START_TEST(nodes_of_uneven_tangents_do_not_cycle) {
     contact_product(m, c.A, r, G);
     for (int i = 0; i < m; ++i)
       if (c.u[i] != 0) ck_assert_double_eq_tol(c.u[i], G[i] + c.f[i], 1e-14);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A cycle is one only if a guess comes back: all of two nodes in the plane. */
-START_TEST(every_guess_has_a_hash_of_its_own) {
+TEST(every_guess_has_a_hash_of_its_own) {
   enum { EACH = 8, ALL = EACH * EACH }; /* open or closed; free, stuck, slips */
-  contact_case c = case_new(2, 2, 0.5);
+  CONTACT_CASE c = case_new(2, 2, 0.5);
   uint64_t hash[ALL];
   OWNED char *owner = memory_new(1, 1);
   OWNS(owner);
@@ -173,11 +161,6 @@ START_TEST(every_guess_has_a_hash_of_its_own) {
     hash[k] = states_hash(&s);
     for (int l = 0; l < k; ++l) ck_assert(hash[k] != hash[l]);
   }
-  case_free(&c);
 }
-END_TEST
 
-UNIT_MAIN("newton", every_guess_has_a_hash_of_its_own,
-          nodes_of_uneven_tangents_do_not_cycle,
-          front_of_slip_is_followed_to_its_end, front_goes_on_from_where_it_was,
-          front_of_slip_is_found_from_the_compliance)
+UNIT_MAIN("newton")

@@ -2,7 +2,6 @@
  * src/contact/nonlocal.c: the law on surfaces of a mesh, closed forms of Hertz;
  * and every solver row on problems whose limit is an average (B not diagonal).
  */
-#include "base/base.h"
 #include "contact/friction.h"
 #include "solver/fixed_point.h"
 #include "support/grid.h"
@@ -23,7 +22,7 @@ static double apart(const contact_case *c, const double *u) {
 /* Every row must solve it and give the same answer. */
 static void all_agree(contact_case *c, const char *what) {
   const solver_ops *ops;
-  double *u = calloc((size_t)c->cp.m, sizeof *u);
+  FREED double *u = calloc((size_t)c->cp.m, sizeof *u);
   case_cold(c);
   ck_assert_int_eq(solve_by(NULL, c, 1e-12, c->u, c->r).outcome, CONVERGED);
   memcpy(u, c->u, (size_t)c->cp.m * sizeof *u);
@@ -37,43 +36,38 @@ static void all_agree(contact_case *c, const char *what) {
     ck_assert_msg(v <= 1e-9, "%s: %s: violation %g", what, row_name(ops), v);
     ck_assert_msg(d <= 1e-8, "%s: %s: apart by %g", what, row_name(ops), d);
   }
-  free(u);
 }
 
 /* Moderate friction: one answer, and every row finds it. */
-START_TEST(every_row_solves_averages) {
+TEST(every_row_solves_averages) {
   static const double mus[] = {0.05, 0.2, 0.4};
   char what[40];
   for (int k = 0; k < 90; ++k) {
     int dim = 2 + k % 2, n = 2 + (k * 7) % 23;
-    contact_case c =
+    CONTACT_CASE c =
         case_any(dim, n, 0.5, k / 2 % 2, (unsigned long long)(4000 + k));
     case_average(&c, 1 + k % 7, mus[k % 3]);
     for (int i = 0; i < n && k % 5 == 0; ++i) c.g0[i] = 0.05 * (i % 3);
     snprintf(what, sizeof what, "problem %d", k);
     all_agree(&c, what);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* The block with open, slipping and sticking nodes. */
-START_TEST(every_row_solves_the_block) {
+TEST(every_row_solves_the_block) {
   for (int reach = 1; reach <= 8; reach *= 2) {
-    contact_case c = case_published(32, 1.0);
+    CONTACT_CASE c = case_published(32, 1.0);
     case_average(&c, reach, 0.8);
     all_agree(&c, "block");
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Large friction: AUTO answers, and who claims an answer has one. */
-START_TEST(large_friction_on_averages) {
+TEST(large_friction_on_averages) {
   static const double mus[] = {1.0, 2.0, 5.0, 50.0};
   const solver_ops *ops;
   for (int k = 0; k < 8; ++k) {
-    contact_case c = case_published(32, 1.0);
+    CONTACT_CASE c = case_published(32, 1.0);
     case_average(&c, k % 2 ? 6 : 1, mus[k / 2]);
     for (int i = 0; solver_row(i, &ops); ++i) {
       case_cold(&c);
@@ -86,22 +80,20 @@ START_TEST(large_friction_on_averages) {
       ck_assert_msg(v <= 1e-9, "mu = %g: %s: violation %g", mus[k / 2],
                     row_name(ops), v);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* The loop of AUTO along a friction path scales every entry of B. */
-START_TEST(friction_path_follows_averages) {
+TEST(friction_path_follows_averages) {
   for (int k = 0; k < 3; ++k) {
     const solver_ops *ops = &newton_solver;
     double param[PARAM_SIZE / sizeof(double)] = {0.0};
-    contact_case c = case_published(32, 1.0);
+    CONTACT_CASE c = case_published(32, 1.0);
     case_average(&c, 3, k == 0 ? 0.1 : 2.0 * k);
-    double *u = calloc((size_t)c.cp.m, sizeof *u);
+    FREED double *u = calloc((size_t)c.cp.m, sizeof *u);
     solver_report rep;
-    void *work = NULL;
-    friction_path *path = NULL;
+    OWNED void *work = NULL;
+    OWNED friction_path *path = NULL;
     solver_control control = {.tol = 1e-11};
     ck_assert_int_eq(solve_by(NULL, &c, 1e-12, c.u, c.r).outcome, CONVERGED);
     memcpy(u, c.u, (size_t)c.cp.m * sizeof *u);
@@ -115,24 +107,19 @@ START_TEST(friction_path_follows_averages) {
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_double_lt(case_violation(&c, c.u, c.r), 1e-9);
     if (k == 0) ck_assert_double_lt(apart(&c, u), 1e-8);
-    memory_free(path);
-    memory_free(work);
-    free(u);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* The same problem as a compliance. */
-START_TEST(averages_in_compliance_form) {
+TEST(averages_in_compliance_form) {
   const solver_ops *ops;
   for (int k = 0; k < 10; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2 + k % 2, 9, 0.3, 0, (unsigned long long)(4200 + k));
     case_average(&c, k < 6 ? 2 : 9, 0.3);
     size_t m = (size_t)c.cp.m;
-    double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q),
-           *r = calloc(m, sizeof *r);
+    FREED double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q),
+                 *r = calloc(m, sizeof *r);
     ck_assert(case_inverse(c.cp.m, c.A, W));
     ck_assert_int_eq(solve_by(NULL, &c, 1e-12, c.u, c.r).outcome, CONVERGED);
     memcpy(r, c.r, m * sizeof *r);
@@ -149,13 +136,8 @@ START_TEST(averages_in_compliance_form) {
       for (size_t j = 0; j < m; ++j)
         ck_assert_double_eq_tol(c.r[j], r[j], 1e-7);
     }
-    free(W);
-    free(q);
-    free(r);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* ---- the law on a surface ------------------------------------------------ */
 
@@ -222,7 +204,7 @@ static sparse_rows average(scene *c, const friction_card *card) {
 /* Forces in, limits out: with uniform pressure the limit of an inner node is
  * its force, whatever areas and thickness; the sum over all columns of mu times
  * the forces is what the mass at the nodes says. */
-START_TEST(limit_of_uniform_pressure_is_the_force) {
+TEST(limit_of_uniform_pressure_is_the_force) {
   static const int cells[3] = {12, 12, 2};
   static const double length[3] = {1, 2, 0.5};
   for (int k = 0; k < 3; ++k) {
@@ -262,11 +244,10 @@ START_TEST(limit_of_uniform_pressure_is_the_force) {
     scene_close(&c);
   }
 }
-END_TEST
 
 /* Separated points within rho carry friction too: however the pressure lies
  * inside, the total of the limits is mu times the total of the forces. */
-START_TEST(total_limit_is_mu_times_the_force) {
+TEST(total_limit_is_mu_times_the_force) {
   scene c;
   scene_open(&c, make_grid_2d((int[]){50, 1}, (double[]){5, 1}), 1.0, 0);
   void *param = law_options("0.7");
@@ -283,11 +264,10 @@ START_TEST(total_limit_is_mu_times_the_force) {
   free(param);
   scene_close(&c);
 }
-END_TEST
 
 /* Hertz pressure sqrt(1 - x^2) on [-1, 1], friction in the contact only:
  * T/(mu P) and R(p) at its edge. */
-START_TEST(hertz_pressure_has_its_closed_form) {
+TEST(hertz_pressure_has_its_closed_form) {
   static const char *const radius[] = {"0.02", "0.05", "0.1", "0.2", "0.5"};
   static const double total[] = {0.99962028, 0.99850253, 0.99578114, 0.98816209,
                                  0.95435634},
@@ -296,7 +276,7 @@ START_TEST(hertz_pressure_has_its_closed_form) {
   for (int k = 0; k < 5; ++k) {
     scene c;
     scene_open(&c, make_grid_2d((int[]){2 * N, 1}, (double[]){4, 1}), 1.0, 0);
-    void *param = law_options(radius[k]);
+    FREED void *param = law_options(radius[k]);
     friction_card card = {.param = param};
     sparse_rows G = average(&c, &card);
     double T = 0.0, P = 0.0, at_edge = 0.0;
@@ -316,13 +296,11 @@ START_TEST(hertz_pressure_has_its_closed_form) {
     ck_assert_double_eq_tol(T / P, total[k], 2e-3 * h * h + 2e-5);
     ck_assert_double_eq_tol(at_edge, edge[k], 0.2 * edge[k] * h + 2e-5);
     sparse_free(&G);
-    free(param);
     scene_close(&c);
   }
 }
-END_TEST
 
-START_TEST(refused_memory_is_given_back) {
+TEST(refused_memory_is_given_back) {
   scene c;
   scene_open(&c, make_grid_2d((int[]){8, 1}, (double[]){1, 1}), 1.0, 0);
   void *param = law_options("0.3");
@@ -342,10 +320,5 @@ START_TEST(refused_memory_is_given_back) {
   free(param);
   scene_close(&c);
 }
-END_TEST
 
-UNIT_MAIN("nonlocal", every_row_solves_averages, every_row_solves_the_block,
-          large_friction_on_averages, friction_path_follows_averages,
-          averages_in_compliance_form, limit_of_uniform_pressure_is_the_force,
-          total_limit_is_mu_times_the_force, hertz_pressure_has_its_closed_form,
-          refused_memory_is_given_back)
+UNIT_MAIN("nonlocal")

@@ -1,6 +1,5 @@
 /* src/base/number.c: the number forms of the deck, correctly rounded, in any
  * locale. Expected values are literals of the compiler. */
-#include "base/base.h"
 #include "support/unit.h"
 
 #include <locale.h>
@@ -59,7 +58,7 @@ static const char *const reasons[] = {
 };
 /* clang-format on */
 
-START_TEST(every_form_of_a_real_is_read_exactly) {
+TEST(every_form_of_a_real_is_read_exactly) {
   for (size_t i = 0; i < sizeof good_reals / sizeof *good_reals; ++i) {
     double x = -77;
     const char *wrong = number_real(good_reals[i].text, &x);
@@ -67,9 +66,8 @@ START_TEST(every_form_of_a_real_is_read_exactly) {
     ck_assert_msg(x == good_reals[i].value, "%s: %.17g", good_reals[i].text, x);
   }
 }
-END_TEST
 
-START_TEST(what_is_no_real_is_refused_with_a_reason) {
+TEST(what_is_no_real_is_refused_with_a_reason) {
   size_t n = sizeof wrong_reals / sizeof *wrong_reals;
   ck_assert_uint_eq(n, sizeof reasons / sizeof *reasons);
   for (size_t i = 0; i < n; ++i) {
@@ -81,19 +79,17 @@ START_TEST(what_is_no_real_is_refused_with_a_reason) {
     ck_assert(x == -77);
   }
 }
-END_TEST
 
 /* The sign of zero is kept. */
-START_TEST(minus_zero_keeps_its_sign) {
+TEST(minus_zero_keeps_its_sign) {
   double x = 1;
   ck_assert_ptr_null(number_real("-0.", &x));
   ck_assert(x == 0 && signbit(x));
 }
-END_TEST
 
 /* 2^-1074 and the number half way above it have 751 digits and more: digits
  * far behind decide. 1 + 2^-53 is half way between 1 and the next double. */
-START_TEST(digits_far_behind_decide_the_rounding) {
+TEST(digits_far_behind_decide_the_rounding) {
   char text[3000] = "1.00000000000000011102230246251565404236316680908203125";
   double x;
   ck_assert_ptr_null(number_real(text, &x));
@@ -107,9 +103,8 @@ START_TEST(digits_far_behind_decide_the_rounding) {
   ck_assert_ptr_null(number_real(text, &x));
   ck_assert(x == 1.0);
 }
-END_TEST
 
-START_TEST(thousands_of_digits_before_the_point) {
+TEST(thousands_of_digits_before_the_point) {
   char text[2100];
   double x;
   memset(text, '0', sizeof text);
@@ -123,9 +118,8 @@ START_TEST(thousands_of_digits_before_the_point) {
   ck_assert_ptr_null(number_real(text, &x));
   ck_assert(x == 5.0);
 }
-END_TEST
 
-START_TEST(integers_are_whole_and_in_range) {
+TEST(integers_are_whole_and_in_range) {
   static const struct {
     const char *text, *wrong;
     int value;
@@ -156,27 +150,24 @@ START_TEST(integers_are_whole_and_in_range) {
     ck_assert_int_eq(n, cases[i].value);
   }
 }
-END_TEST
 
-START_TEST(column_may_have_any_exponent_without_letter) {
+TEST(column_may_have_any_exponent_without_letter) {
   double x = 0;
   ck_assert_ptr_null(number_column("1.5-3", &x));
   ck_assert(x == 0.0015);
   ck_assert_ptr_null(number_column(" 15+2", &x));
   ck_assert(x == 1500.0);
 }
-END_TEST
 
-START_TEST(exponent_without_letter_is_known) {
+TEST(exponent_without_letter_is_known) {
   ck_assert_int_eq(number_bare_exponent("1.5+03"), 1);
   ck_assert_int_eq(number_bare_exponent(" 32-1"), 1);
   ck_assert_int_eq(number_bare_exponent("1.5E+03"), 0);
   ck_assert_int_eq(number_bare_exponent("-1.5"), 0);
   ck_assert_int_eq(number_bare_exponent("1.5+x"), 0);
 }
-END_TEST
 
-START_TEST(written_numbers_come_back_exactly) {
+TEST(written_numbers_come_back_exactly) {
   char text[NUMBER_TEXT_SIZE];
   unsigned long long state = 88172645463325252ULL;
   for (int i = 0; i < 60000; ++i) {
@@ -190,9 +181,8 @@ START_TEST(written_numbers_come_back_exactly) {
     ck_assert_msg(number_real(text, &back) == NULL && back == x, "%s", text);
   }
 }
-END_TEST
 
-START_TEST(written_numbers_are_short) {
+TEST(written_numbers_are_short) {
   static const struct {
     double x;
     const char *text;
@@ -209,10 +199,9 @@ START_TEST(written_numbers_are_short) {
     ck_assert_str_eq(text, cases[i].text);
   }
 }
-END_TEST
 
 /* A locale with a decimal comma, if the machine has one. */
-START_TEST(the_locale_has_no_say) {
+TEST(the_locale_has_no_say) {
   static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.utf8",
                                       "de_DE",       "nl_NL.utf8", "C.UTF-8"};
   char text[NUMBER_TEXT_SIZE];
@@ -227,12 +216,5 @@ START_TEST(the_locale_has_no_say) {
   }
   setlocale(LC_ALL, "C");
 }
-END_TEST
 
-UNIT_MAIN("number", every_form_of_a_real_is_read_exactly,
-          what_is_no_real_is_refused_with_a_reason, minus_zero_keeps_its_sign,
-          digits_far_behind_decide_the_rounding,
-          thousands_of_digits_before_the_point, integers_are_whole_and_in_range,
-          column_may_have_any_exponent_without_letter,
-          exponent_without_letter_is_known, written_numbers_come_back_exactly,
-          written_numbers_are_short, the_locale_has_no_say)
+UNIT_MAIN("number")

@@ -1,10 +1,7 @@
 /* src/contact/obstacle.c: the gap against points made on the obstacle. */
-#include "base/memory.h"
 #include "contact/obstacle.h"
 #include "support/formula.h"
 #include "support/unit.h"
-
-#include <math.h>
 
 static double random_part(void) {
   static unsigned long long state = 88172645463325252ull;
@@ -26,10 +23,6 @@ static void random_unit(int dim, double *v) {
   for (int c = 0; c < 3; ++c) v[c] /= sqrt(s);
 }
 
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Start from a point q of the obstacle, whose normal towards the body is w, and
  * step back by s along n: the gap at q - s n is s. */
 static void expect_gap(const obstacle *o, int dim, const double *q,
@@ -39,21 +32,21 @@ static void expect_gap(const obstacle *o, int dim, const double *q,
   ck_assert_double_eq_tol(obstacle_gap(o, dim, x, n, 0), s, 1e-11);
 }
 
-START_TEST(plane_is_met_where_it_was_left) {
+TEST(plane_is_met_where_it_was_left) {
   for (int k = 0; k < 500; ++k) {
     int dim = 2 + k % 2;
     obstacle o = {.shape = OBSTACLE_PLANE};
     double n[3], q[3], a[3];
     random_unit(dim, o.direction);
     random_unit(dim, n);
-    double facing = dot(n, o.direction);
+    double facing = dot(3, n, o.direction);
     if (fabs(facing) < 0.1) continue;
     for (int c = 0; c < dim; ++c) {
       o.point[c] = 3 * random_part();
       a[c] = random_part();
     }
     for (int c = dim; c < 3; ++c) a[c] = 0;
-    double off = dot(a, o.direction);
+    double off = dot(3, a, o.direction);
     for (int c = 0; c < 3; ++c) q[c] = o.point[c] + a[c] - off * o.direction[c];
     if (facing < 0)
       expect_gap(&o, dim, q, n, 2 * random_part());
@@ -61,7 +54,6 @@ START_TEST(plane_is_met_where_it_was_left) {
       ck_assert(obstacle_gap(&o, dim, q, n, 0) == HUGE_VAL);
   }
 }
-END_TEST
 
 /* Normal of the circle at q = centre + radius w towards the body is w outside,
  * -w inside. */
@@ -76,9 +68,9 @@ static void round_case(int k) {
   random_unit(dim, w);
   double slide = 0;
   if (dim == 3 && o.shape == OBSTACLE_CYLINDER) {
-    double along = dot(w, o.direction);
+    double along = dot(3, w, o.direction);
     for (int c = 0; c < 3; ++c) w[c] -= along * o.direction[c];
-    double length = sqrt(dot(w, w));
+    double length = sqrt(dot(3, w, w));
     for (int c = 0; c < 3; ++c) w[c] /= length;
     slide = random_part();
   }
@@ -86,18 +78,17 @@ static void round_case(int k) {
     o.point[c] = c < dim ? random_part() : 0.0;
     q[c] = o.point[c] + o.radius * w[c] + slide * o.direction[c];
   }
-  double facing = (o.inside ? -1 : 1) * dot(n, w);
+  double facing = (o.inside ? -1 : 1) * dot(3, n, w);
   if (facing > -0.2) return;
   expect_gap(&o, dim, q, n, 0.3 * fabs(random_part()));
   expect_gap(&o, dim, q, n, -0.1 * fabs(random_part()));
 }
 
-START_TEST(circle_and_sphere_are_met_where_they_were_left) {
+TEST(circle_and_sphere_are_met_where_they_were_left) {
   for (int k = 0; k < 2000; ++k) round_case(k);
 }
-END_TEST
 
-START_TEST(gap_of_a_disc_above_a_cylinder_by_hand) {
+TEST(gap_of_a_disc_above_a_cylinder_by_hand) {
   obstacle o = {.shape = OBSTACLE_CYLINDER, .radius = 5, .point = {0, -5, 0}};
   double down[3] = {0, -1, 0}, up[3] = {0, 1, 0};
   double x[3] = {3, 1, 0}, inside[3] = {3, -2, 0}, beyond[3] = {5.5, 1, 0};
@@ -112,10 +103,9 @@ START_TEST(gap_of_a_disc_above_a_cylinder_by_hand) {
   ck_assert(obstacle_gap(&o, 2, x, down, 0) == HUGE_VAL);
   ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, up, 0), -2, 1e-14);
 }
-END_TEST
 
 /* A point that has passed the middle of a circle: how far it has come. */
-START_TEST(gap_of_a_deep_point_is_back_to_where_it_entered) {
+TEST(gap_of_a_deep_point_is_back_to_where_it_entered) {
   const obstacle o = {.shape = OBSTACLE_CYLINDER, .radius = 1};
   const double down[2] = {0, -1};
   for (int k = -1; k <= 1; ++k) {
@@ -124,10 +114,9 @@ START_TEST(gap_of_a_deep_point_is_back_to_where_it_entered) {
                             1e-15);
   }
 }
-END_TEST
 
 /* By any of what may depend on time. */
-START_TEST(obstacle_that_depends_on_time_moves) {
+TEST(obstacle_that_depends_on_time_moves) {
   for (int k = 0; k < 6; ++k) {
     obstacle o = {.shape = OBSTACLE_GAP, .turns = 1};
     quantity *q[] = {&o.motion[2], &o.angle, &o.gap};
@@ -136,29 +125,26 @@ START_TEST(obstacle_that_depends_on_time_moves) {
     formula_release(q[k / 2]);
   }
 }
-END_TEST
 
-START_TEST(line_along_the_axis_misses_the_cylinder) {
+TEST(line_along_the_axis_misses_the_cylinder) {
   obstacle o = {
       .shape = OBSTACLE_CYLINDER, .radius = 1, .direction = {0, 0, 1}};
   double x[3] = {2, 0, 0}, n[3] = {0, 0, -1}, slant[3] = {-0.6, 0, 0.8};
   ck_assert(obstacle_gap(&o, 3, x, n, 0) == HUGE_VAL);
   ck_assert_double_eq_tol(obstacle_gap(&o, 3, x, slant, 0), 1 / 0.6, 1e-14);
 }
-END_TEST
 
 /* A tiny gap next to a radius 1e9 times larger keeps its digits. */
-START_TEST(flat_sphere_keeps_the_digits_of_the_gap) {
+TEST(flat_sphere_keeps_the_digits_of_the_gap) {
   obstacle o = {.shape = OBSTACLE_SPHERE, .radius = 1048576};
   o.point[1] = -1048576;
   double down[3] = {0, -1, 0}, x[3] = {0, 0x1p-20, 0};
   ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, down, 0), 0x1p-20, 1e-15);
 }
-END_TEST
 
 /* Above (1, 0) a circle of radius R that touches (0, 0) is R - sqrt(R^2 - 1)
  * away, which is 1/(2 R) to 16 digits. */
-START_TEST(flat_circle_keeps_the_digits_of_the_gap) {
+TEST(flat_circle_keeps_the_digits_of_the_gap) {
   static const double radius[] = {1e8, 1e10, 0x1p40};
   for (int k = 0; k < 3; ++k)
     for (int axis = 0; axis < 3; ++axis) {
@@ -178,9 +164,8 @@ START_TEST(flat_circle_keeps_the_digits_of_the_gap) {
                               -1e-5, 1e-19);
     }
 }
-END_TEST
 
-START_TEST(lengths_times_a_power_of_two_scale_every_bit) {
+TEST(lengths_times_a_power_of_two_scale_every_bit) {
   for (int k = 0; k < 300; ++k) {
     int dim = 2 + k % 2, power = k % 81 - 40;
     obstacle a = {.shape = OBSTACLE_PLANE + k % 3, .inside = k % 2}, b;
@@ -202,10 +187,9 @@ START_TEST(lengths_times_a_power_of_two_scale_every_bit) {
     ck_assert(obstacle_gap(&b, dim, far, n, 0) == ldexp(gap, power));
   }
 }
-END_TEST
 
 /* Straight to the obstacle the gap is the distance, and the shortest. */
-START_TEST(normal_of_the_obstacle_is_the_shortest_way_to_it) {
+TEST(normal_of_the_obstacle_is_the_shortest_way_to_it) {
   for (int k = 0; k < 600; ++k) {
     int dim = 2 + k % 2;
     obstacle o = {.shape = OBSTACLE_PLANE + k % 3, .radius = 1};
@@ -219,7 +203,7 @@ START_TEST(normal_of_the_obstacle_is_the_shortest_way_to_it) {
       x[c] = o.point[c] + o.motion[c].number + (o.inside ? 0.7 : 4.2) * x[c];
     }
     ck_assert_int_eq(obstacle_normal(&o, dim, x, n), 1);
-    ck_assert_double_eq_tol(dot(n, n), 1, 1e-14);
+    ck_assert_double_eq_tol(dot(3, n, n), 1, 1e-14);
     double distance = obstacle_gap(&o, dim, x, n, 0);
     ck_assert(fabs(distance) < 10);
     if (distance < 0) continue;
@@ -229,9 +213,8 @@ START_TEST(normal_of_the_obstacle_is_the_shortest_way_to_it) {
     }
   }
 }
-END_TEST
 
-START_TEST(shapes_without_a_normal_leave_it_alone) {
+TEST(shapes_without_a_normal_leave_it_alone) {
   obstacle o = {.shape = OBSTACLE_CONFORMING};
   double x[3] = {0, 0, 0}, n[3] = {0.6, 0.8, 0};
   ck_assert_int_eq(obstacle_normal(&o, 2, x, n), 0);
@@ -242,9 +225,8 @@ START_TEST(shapes_without_a_normal_leave_it_alone) {
   ck_assert_int_eq(obstacle_normal(&o, 2, x, n), 0);
   ck_assert(n[0] == 0.6 && n[1] == 0.8);
 }
-END_TEST
 
-START_TEST(obstacle_shifts_with_time) {
+TEST(obstacle_shifts_with_time) {
   obstacle o = {.shape = OBSTACLE_PLANE, .direction = {0, 1, 0}};
   double down[3] = {0, -1, 0}, x[3] = {7, 2, 0};
   ck_assert_int_eq(obstacle_moves(&o), 0);
@@ -256,11 +238,10 @@ START_TEST(obstacle_shifts_with_time) {
   ck_assert_double_eq(obstacle_gap(&o, 2, x, down, 4), -1);
   formula_release(&o.motion[1]);
 }
-END_TEST
 
 /* v = R(a, angle) v by the matrix cos I + sin [a] + (1 - cos) a a'. */
 static void rotate(const double *a, double angle, double *v) {
-  double w[3], along = dot(a, v), k = 1 - cos(angle);
+  double w[3], along = dot(3, a, v), k = 1 - cos(angle);
   for (int c = 0; c < 3; ++c) {
     int d = (c + 1) % 3, e = (c + 2) % 3;
     w[c] = cos(angle) * v[c] + sin(angle) * (a[d] * v[e] - a[e] * v[d]) +
@@ -293,7 +274,7 @@ static obstacle brought(int dim, const obstacle *o) {
   return b;
 }
 
-START_TEST(turned_obstacle_is_the_one_made_there) {
+TEST(turned_obstacle_is_the_one_made_there) {
   for (int k = 0; k < 600; ++k) {
     int dim = 2 + k % 2;
     obstacle o = {.shape = OBSTACLE_PLANE + k % 3, .radius = 2};
@@ -315,22 +296,20 @@ START_TEST(turned_obstacle_is_the_one_made_there) {
       ck_assert_double_eq_tol(normal[c], expected[c], 1e-10);
   }
 }
-END_TEST
 
 /* Turned about the normal by a quarter, x y becomes that of the point (y, -x);
  * tilted by a small angle, the conforming obstacle rises by angle times arm. */
-START_TEST(given_gap_turns_about_the_normal_and_tilts_a_little) {
+TEST(given_gap_turns_about_the_normal_and_tilts_a_little) {
   obstacle o = {.shape = OBSTACLE_GAP, .turns = 1, .pivot = {1, 2, 0}};
   double down[3] = {0, 0, -1}, x[3] = {4, 7, 0};
   o.axis[2] = 1;
   o.angle.number = acos(-1.0) / 2;
-  expression *e = NULL;
+  OWNED expression *e = NULL;
   int column;
   ck_assert_int_eq(expression_compile("x + 10*y", NULL, NULL, &e, &column), OK);
   o.gap.formula = e;
   /* From the pivot (3, 5), a quarter back: (5, -3), so the point (6, -1). */
   ck_assert_double_eq_tol(obstacle_gap(&o, 3, x, down, 0), 6 - 10, 1e-13);
-  memory_free(e);
   obstacle c = {.shape = OBSTACLE_CONFORMING, .turns = 1, .axis = {0, 1, 0}};
   for (int k = 0; k < 2; ++k) { /* the height of its arm */
     const double angle = c.angle.number = k ? 0.3 : 1e-6;
@@ -339,11 +318,10 @@ START_TEST(given_gap_turns_about_the_normal_and_tilts_a_little) {
                             4 * sin(angle) - x[2] * (1 - cos(angle)), 1e-14);
   }
 }
-END_TEST
 
 /* A roller about its own axis passes by radius times angle, however far and in
  * however many parts it turns; a plane that turns passes in circles. */
-START_TEST(surface_passes_by_angle_times_arm) {
+TEST(surface_passes_by_angle_times_arm) {
   obstacle o = {.shape = OBSTACLE_CYLINDER,
                 .radius = 5,
                 .point = {1, -5, 0},
@@ -364,12 +342,11 @@ START_TEST(surface_passes_by_angle_times_arm) {
   p.axis[0] = 1;
   p.angle.formula = o.angle.formula;
   ck_assert_double_eq_tol(obstacle_tilt(&p, 0.25), 0.75, 1e-14);
-  expression *late = NULL;
+  OWNED expression *late = NULL;
   int column;
   ck_assert_int_eq(expression_compile("1+t", NULL, NULL, &late, &column), OK);
   p.angle.formula = late;
   ck_assert_double_eq_tol(obstacle_tilt(&p, 0.25), 0.25, 1e-14);
-  memory_free(late);
   p.angle.formula = o.angle.formula;
   ck_assert_double_eq(obstacle_tilt(&o, 0.25), 0);
   p.axis[0] = 0;
@@ -383,12 +360,11 @@ START_TEST(surface_passes_by_angle_times_arm) {
   formula_release(&o.angle);
   formula_release(&o.motion[1]);
 }
-END_TEST
 
 /* Moved and turned at once, along and about an axis across the surface: the
  * arm from the axis changes in proportion to the time, so that the way is that
  * of the velocity integrated, and two half steps make one. */
-START_TEST(surface_that_moves_and_turns_passes_by_its_velocity) {
+TEST(surface_that_moves_and_turns_passes_by_its_velocity) {
   obstacle o = {.shape = OBSTACLE_PLANE,
                 .direction = {0, 0, 1},
                 .pivot = {0.5, -0.25, 0},
@@ -416,10 +392,9 @@ START_TEST(surface_that_moves_and_turns_passes_by_its_velocity) {
   formula_release(&o.motion[0]);
   formula_release(&o.motion[1]);
 }
-END_TEST
 
 /* A parabola that moves sideways is the parabola about its new apex. */
-START_TEST(given_gap_is_that_of_the_point_now_opposite) {
+TEST(given_gap_is_that_of_the_point_now_opposite) {
   obstacle o = {.shape = OBSTACLE_GAP};
   double down[3] = {0, -1, 0}, x[3] = {3, 0, 0};
   formula_compile(&o.gap, "x*x/20");
@@ -440,21 +415,5 @@ START_TEST(given_gap_is_that_of_the_point_now_opposite) {
   formula_release(&o.gap);
   formula_release(&sideways);
 }
-END_TEST
 
-UNIT_MAIN("obstacle", plane_is_met_where_it_was_left,
-          circle_and_sphere_are_met_where_they_were_left,
-          gap_of_a_disc_above_a_cylinder_by_hand,
-          gap_of_a_deep_point_is_back_to_where_it_entered,
-          obstacle_that_depends_on_time_moves,
-          line_along_the_axis_misses_the_cylinder,
-          flat_sphere_keeps_the_digits_of_the_gap,
-          flat_circle_keeps_the_digits_of_the_gap,
-          lengths_times_a_power_of_two_scale_every_bit,
-          normal_of_the_obstacle_is_the_shortest_way_to_it,
-          shapes_without_a_normal_leave_it_alone, obstacle_shifts_with_time,
-          turned_obstacle_is_the_one_made_there,
-          given_gap_turns_about_the_normal_and_tilts_a_little,
-          surface_passes_by_angle_times_arm,
-          surface_that_moves_and_turns_passes_by_its_velocity,
-          given_gap_is_that_of_the_point_now_opposite)
+UNIT_MAIN("obstacle")

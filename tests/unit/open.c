@@ -1,14 +1,9 @@
 /* src/mesh/crack: meshes opened along cracks */
-#include "base/memory.h"
 #include "mesh/crack/crack.h"
 #include "support/grid.h"
 #include "support/inner_group.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- cracks on the lines of grids with cells of size 1 ---------------------
  */
@@ -36,7 +31,7 @@ TAKE(edge,       IN(0, 4) TO(5, 4))
 TAKE(kink,       IN(2, 4) TO(4, 4) || IN(4, 4) TO(4, 6))
 TAKE(branch,     IN(2, 4) TO(6, 4) || IN(4, 4) TO(4, 7))
 TAKE(sideways,   IN(4, 4) TO(6, 4) || upright(m, v))
-TAKE(cross,      line(m, v) || upright(m, v))
+TAKE(crossing,   line(m, v) || upright(m, v))
 TAKE(through,    IN(0, 4) TO(8, 4))
 TAKE(ring,       IN(2, 2) TO(6, 2) || IN(2, 6) TO(6, 6) ||
                  IN(2, 2) TO(2, 6) || IN(6, 2) TO(6, 6))
@@ -94,7 +89,7 @@ typedef struct opened {
 /* Take over the mesh and open its groups. */
 static void open_groups(opened *o, mesh *m, int n, const char *const *names) {
   mesh_cut cut[2];
-  message_log *log;
+  OWNED message_log *log = NULL;
   const place at = {.file = "job.inp", .line_no = 7, .column_no = 1};
   size_t size = (size_t)((m->dim + 1) * m->n_elem) * sizeof(int);
   memset(o, 0, sizeof *o);
@@ -111,7 +106,6 @@ static void open_groups(opened *o, mesh *m, int n, const char *const *names) {
   FILE *out = fmemopen(o->messages, sizeof o->messages - 1, "w");
   message_print(log, out);
   fclose(out);
-  memory_free(log);
 }
 
 static void close_opened(opened *o) {
@@ -189,7 +183,7 @@ static void check_faces(const mesh *m) {
 
 /* Groups hold the nodes of their items, ascending. */
 static void check_groups(const mesh *m) {
-  char *used = malloc((size_t)m->n_node);
+  FREED char *used = malloc((size_t)m->n_node);
   for (int i = 0; i < m->n_group; ++i) {
     const mesh_group *g = &m->group[i];
     int n = 0;
@@ -208,7 +202,6 @@ static void check_groups(const mesh *m) {
     for (int k = 0; k < m->n_node; ++k) n += used[k];
     ck_assert_int_eq(n, g->n_node);
   }
-  free(used);
 }
 
 static int at_front(const mesh_crack *c, int node) {
@@ -222,12 +215,6 @@ static void centre_of(const mesh *m, int n, const int *v, double *x) {
     x[k] = 0.0;
     for (int i = 0; i < n; ++i) x[k] += m->x[m->dim * v[i] + k] / n;
   }
-}
-
-static double dot(int dim, const double *a, const double *b) {
-  double sum = 0.0;
-  for (int k = 0; k < dim; ++k) sum += a[k] * b[k];
-  return sum;
 }
 
 /* Two faces at one place that look at each other and have only nodes of the
@@ -258,11 +245,6 @@ static void check_lips(const mesh *m, const mesh_crack *c) {
   }
 }
 
-static void cross_product(const double *a, const double *b, double *c) {
-  for (int k = 0; k < 3; ++k)
-    c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 /* Edges of a chain belong to both lips of their face, where the crack grows
  * outward, along e1 x e2. */
 static void check_front(const mesh *m, const mesh_crack *c) {
@@ -283,7 +265,7 @@ static void check_front(const mesh *m, const mesh_crack *c) {
         x[k] = m->x[3 * a[1] + k] - m->x[3 * a[0] + k];
       }
       mesh_face_normal(m, c->minus[face], e2);
-      cross_product(e1, e2, e3);
+      cross(e1, e2, e3);
       ck_assert_double_gt(dot(3, e3, x), 0.0);
     }
 }
@@ -320,7 +302,7 @@ static const crack_case crack_cases[] = {
     {"edge crack", 2, edge, 5, 5, 1, 1, 1, 2},
     {"kink", 2, kink, 4, 3, 2, 2, 1, 2},
     {"branch", 2, branch, 7, 4 + 2, 3, 3, 1, 3},
-    {"crossing", 2, cross, 8, 4 + 3, 4, 4, 1, 4},
+    {"crossing", 2, crossing, 8, 4 + 3, 4, 4, 1, 4},
     {"through", 2, through, 8, 9, 0, 0, 2, 2},
     {"ring", 2, ring, 16, 16, 0, 0, 2, 2},
     {"two cracks with one mouth", 2, forked_mouth, 5, 3 + 2, 2, 2, 1, 3},
@@ -344,7 +326,7 @@ static int most_copies(const mesh *m) {
   return most;
 }
 
-START_TEST(cracks_of_all_kinds_open) {
+TEST(cracks_of_all_kinds_open) {
   for (int i = 0; i < N_CRACK_CASE; ++i) {
     const crack_case *c = &crack_cases[i];
     opened o;
@@ -368,16 +350,15 @@ START_TEST(cracks_of_all_kinds_open) {
     close_opened(&o);
   }
 }
-END_TEST
 
 /* Plus is above: by the last axis in which the normal has a part. */
-START_TEST(plus_is_above) {
+TEST(plus_is_above) {
   static const struct {
     int dim, axis;
     take_side *take;
-  } cases[] = {{2, 1, line},     {2, 0, upright}, {2, 1, branch},
-               {2, 1, sideways}, {2, 1, cross},   {3, 2, square},
-               {3, 0, wall},     {3, 2, crossed}, {3, 2, three_parts}};
+  } cases[] = {{2, 1, line},     {2, 0, upright},  {2, 1, branch},
+               {2, 1, sideways}, {2, 1, crossing}, {3, 2, square},
+               {3, 0, wall},     {3, 2, crossed},  {3, 2, three_parts}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     opened o;
     open_one(&o, cases[i].dim, cases[i].take);
@@ -391,10 +372,9 @@ START_TEST(plus_is_above) {
     close_opened(&o);
   }
 }
-END_TEST
 
 /* Neighbours agree round a kink: from the left over the top to the right. */
-START_TEST(lips_are_turned_alike_round_a_kink) {
+TEST(lips_are_turned_alike_round_a_kink) {
   opened o;
   open_one(&o, 2, kink);
   const mesh_group *plus = mesh_find_group(o.m, "CRACK+");
@@ -416,12 +396,11 @@ START_TEST(lips_are_turned_alike_round_a_kink) {
   ck_assert_int_ne(plus->tag, minus->tag);
   close_opened(&o);
 }
-END_TEST
 
 /* ---- several cracks, other groups ------------------------------------------
  */
 
-START_TEST(two_cracks_that_cross_have_fronts_of_their_own) {
+TEST(two_cracks_that_cross_have_fronts_of_their_own) {
   mesh *m = grid(3);
   opened o;
   add_side_group(m, "FLAT", square);
@@ -438,10 +417,9 @@ START_TEST(two_cracks_that_cross_have_fronts_of_their_own) {
   }
   close_opened(&o);
 }
-END_TEST
 
 /* A crack that ends on another one has no tip there. */
-START_TEST(crack_that_ends_on_another_has_one_tip) {
+TEST(crack_that_ends_on_another_has_one_tip) {
   mesh *m = grid(2);
   opened o;
   add_side_group(m, "SHORT", short_line);
@@ -454,7 +432,6 @@ START_TEST(crack_that_ends_on_another_has_one_tip) {
   ck_assert_int_eq(o.crack[1].n_front, 2);
   close_opened(&o);
 }
-END_TEST
 
 static int node_at(const mesh *m, double x, double y) {
   for (int i = 0; i < m->n_node; ++i)
@@ -463,10 +440,10 @@ static int node_at(const mesh *m, double x, double y) {
 }
 
 /* Other faces stay with face_elem, groups of nodes get the copies. */
-START_TEST(other_groups_follow) {
+TEST(other_groups_follow) {
   mesh *m = grid(2);
   opened o;
-  add_side_group(m, "CRACK", cross);
+  add_side_group(m, "CRACK", crossing);
   add_side_group(m, "LEVEL", through); /* 8 faces, 4 of them in the crack */
   const int nodes[] = {node_at(m, 3, 4), node_at(m, 4, 4), node_at(m, 2, 4),
                        node_at(m, 0, 0)};
@@ -488,9 +465,8 @@ START_TEST(other_groups_follow) {
              "node(s) on a crack, and now all of their copies"));
   close_opened(&o);
 }
-END_TEST
 
-START_TEST(supports_at_a_mouth_hold_both_sides) {
+TEST(supports_at_a_mouth_hold_both_sides) {
   opened o;
   open_one(&o, 2, edge);
   const mesh_group *left = mesh_find_group(o.m, "LEFT");
@@ -498,19 +474,15 @@ START_TEST(supports_at_a_mouth_hold_both_sides) {
   ck_assert_int_eq(left->n_node, 10); /* the node at (0, 4) twice */
   close_opened(&o);
 }
-END_TEST
 
-START_TEST(no_crack_leaves_the_mesh_alone) {
-  mesh *m = grid(2);
-  message_log *log;
+TEST(no_crack_leaves_the_mesh_alone) {
+  OWNED mesh *m = grid(2);
+  OWNED message_log *log = NULL;
   ck_assert_int_eq(message_log_new(&log), OK);
   ck_assert_int_eq(mesh_open(m, 0, NULL, log, NULL), OK);
   ck_assert_ptr_null(m->origin);
   ck_assert_int_eq(m->n_group, 5);
-  memory_free(log);
-  memory_free(m);
 }
-END_TEST
 
 /* ---- a penny in a mesh of gmsh ---------------------------------------------
  */
@@ -524,8 +496,8 @@ static const char penny_geo[] =
     "Physical Volume(\"BODY\") = {1};\n"
     "Physical Surface(\"PENNY\") = {100};\n";
 
-START_TEST(penny_in_a_mesh_of_gmsh) {
-  mesh_file f;
+TEST(penny_in_a_mesh_of_gmsh) {
+  MESH_FILE f;
   opened o;
   mesh_file_open(&f);
   mesh *m = mesh_file_text(&f, "penny.geo", penny_geo);
@@ -549,9 +521,7 @@ START_TEST(penny_in_a_mesh_of_gmsh) {
   ck_assert_int_eq(mesh_find_group(m, "PENNY")->n_node,
                    2 * (m->n_node - o.n_node) + c->front_start[1] - 1);
   close_opened(&o);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* ---- errors ----------------------------------------------------------------
  */
@@ -574,7 +544,7 @@ static mesh *band_grid(void) {
   return make_grid_3d((const int[]){6, 10, 8}, (const double[]){6, 10, 8});
 }
 
-START_TEST(band_with_a_half_twist_has_one_side) {
+TEST(band_with_a_half_twist_has_one_side) {
   opened o;
   mesh *m = band_grid();
   add_side_group(m, "BAND", on_twisted_band);
@@ -592,9 +562,8 @@ START_TEST(band_with_a_half_twist_has_one_side) {
   check_opened(&o, 1);
   close_opened(&o);
 }
-END_TEST
 
-START_TEST(each_error_is_told) {
+TEST(each_error_is_told) {
   static const struct {
     int n;
     const char *names[2], *text;
@@ -627,7 +596,7 @@ START_TEST(each_error_is_told) {
     mesh *m = grid(2);
     opened o;
     add_side_group(m, "LINE", line);
-    add_side_group(m, "CROSS", cross);
+    add_side_group(m, "CROSS", crossing);
     add_side_group(m, "FOOT", foot);
     add_side_group(m, "SHORT", short_line);
     add_side_group(m, "EDGE", edge);
@@ -640,9 +609,8 @@ START_TEST(each_error_is_told) {
     close_opened(&o);
   }
 }
-END_TEST
 
-START_TEST(closed_faces_are_told_and_leave_the_crack) {
+TEST(closed_faces_are_told_and_leave_the_crack) {
   opened o;
   open_one(&o, 3, square);
   ck_assert_msg(strstr(o.messages,
@@ -653,16 +621,15 @@ START_TEST(closed_faces_are_told_and_leave_the_crack) {
   ck_assert_int_eq(mesh_find_group(o.m, "CRACK")->n_node, 2 * 9 + 14);
   close_opened(&o);
 }
-END_TEST
 
-START_TEST(each_refused_request_is_an_error_and_frees_all) {
+TEST(each_refused_request_is_an_error_and_frees_all) {
   for (int dim = 2; dim <= 3; ++dim)
     for (long k = 1, refused = 1; refused; ++k) {
       size_t before = memory_in_use();
       mesh *m = grid(dim);
       mesh_crack crack;
       message_log *log;
-      add_side_group(m, "CRACK", dim == 2 ? cross : square);
+      add_side_group(m, "CRACK", dim == 2 ? crossing : square);
       ck_assert_int_eq(message_log_new(&log), OK);
       const mesh_cut cut = {mesh_find_group(m, "CRACK"), NULL};
       long start = memory_requests();
@@ -676,13 +643,5 @@ START_TEST(each_refused_request_is_an_error_and_frees_all) {
       ck_assert_uint_eq(memory_in_use(), before);
     }
 }
-END_TEST
 
-UNIT_MAIN("open", cracks_of_all_kinds_open, plus_is_above,
-          lips_are_turned_alike_round_a_kink,
-          two_cracks_that_cross_have_fronts_of_their_own,
-          crack_that_ends_on_another_has_one_tip, other_groups_follow,
-          supports_at_a_mouth_hold_both_sides, no_crack_leaves_the_mesh_alone,
-          penny_in_a_mesh_of_gmsh, band_with_a_half_twist_has_one_side,
-          each_error_is_told, closed_faces_are_told_and_leave_the_crack,
-          each_refused_request_is_an_error_and_frees_all)
+UNIT_MAIN("open")

@@ -3,7 +3,6 @@
  * next to unit/conformance: options, held unknowns, the order of AUTO, refused
  * memory.
  */
-#include "base/base.h"
 #include "support/operated_case.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
@@ -55,8 +54,8 @@ static contact_case half_block(double mu) {
 }
 
 /* The held unknown is moved by its own row, by 1e-3. */
-START_TEST(held_unknowns_are_solved_for_alone) {
-  contact_case c = half_block(0.4);
+TESTS(held_unknowns_are_solved_for_alone, VARIANTS) {
+  CONTACT_CASE c = half_block(0.4);
   solver_report rep;
   int held = -1;
   for (int i = 0; i < c.cp.m; ++i)
@@ -70,9 +69,7 @@ START_TEST(held_unknowns_are_solved_for_alone) {
   ck_assert_double_eq_tol(c.u[held], 1e-3, 1e-13);
   ck_assert_double_le(case_violation(&c, c.u, c.r), 1e-9);
   operated_free(o, &c);
-  case_free(&c);
 }
-END_TEST
 
 /* Nodes that do not touch have no force, not even rounding. */
 static void open_nodes_are_free(const contact_case *c) {
@@ -84,9 +81,9 @@ static void open_nodes_are_free(const contact_case *c) {
 
 /* In space, where slip turns, and in the plane; from a cold start, and for
  * another load from the answer. */
-START_TEST(variants_solve) {
+TESTS(variants_solve, VARIANTS) {
   for (int k = 0; k < 4; ++k) {
-    contact_case c = case_any(2 + k % 2, 9, 0.3, k / 2, 700u + (unsigned)k);
+    CONTACT_CASE c = case_any(2 + k % 2, 9, 0.3, k / 2, 700u + (unsigned)k);
     solver_report rep;
     operated_case *o = operated_new(&c);
     for (int load = 0; load < 2; ++load) {
@@ -97,16 +94,14 @@ START_TEST(variants_solve) {
       for (int i = 0; i < c.cp.m; ++i) c.f[i] *= i % 2 ? 1.3 : 0.8;
     }
     operated_free(o, &c);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Of Newton's kind: friction follows pressure in a step, so there are not many.
  */
-START_TEST(steps_are_as_many_as_by_the_entries) {
+TESTS(steps_are_as_many_as_by_the_entries, 4) {
   for (int k = 0; k < 6; ++k) {
-    contact_case c = case_any(2 + k % 2, 20, 0.8, k / 2 % 2, 60u + (unsigned)k);
+    CONTACT_CASE c = case_any(2 + k % 2, 20, 0.8, k / 2 % 2, 60u + (unsigned)k);
     solver_report dense, sparse;
     case_cold(&c);
     ck_assert_int_eq(solve(&variants[_i], &c, 0, &dense, NULL), OK);
@@ -115,15 +110,13 @@ START_TEST(steps_are_as_many_as_by_the_entries) {
     ck_assert_int_eq(solve(&variants[_i], &c, 0, &sparse, NULL), OK);
     ck_assert_int_le(10 * sparse.iterations, 11 * dense.iterations + 30);
     operated_free(o, &c);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A unit of force and one of length: A by 2^41, f by 2^28. */
-START_TEST(factors_of_two_change_no_bit) {
+TESTS(factors_of_two_change_no_bit, VARIANTS) {
   for (int k = 0; k < 2; ++k) {
-    contact_case c = case_any(2 + k, 9, 0.3, 0, 80u),
+    CONTACT_CASE c = case_any(2 + k, 9, 0.3, 0, 80u),
                  d = case_any(2 + k, 9, 0.3, 0, 80u);
     solver_report one, two;
     const int m = c.cp.m;
@@ -139,18 +132,15 @@ START_TEST(factors_of_two_change_no_bit) {
       ck_assert(d.u[j] == ldexp(c.u[j], -13) && d.r[j] == ldexp(c.r[j], 28));
     operated_free(o, &c);
     operated_free(q, &d);
-    case_free(&c);
-    case_free(&d);
   }
 }
-END_TEST
 
 /* Those that need no entries come first. */
-START_TEST(entries_are_formed_last) {
+TEST(entries_are_formed_last) {
   static const char *const order[] = {
       "newton: ", "newton along", "auglag: ", "proximal: ", "pcg: ", "sor: "};
   char log[1024];
-  contact_case c = case_any(3, 12, 1.5, 0, 41);
+  CONTACT_CASE c = case_any(3, 12, 1.5, 0, 41);
   operated_case *o = operated_new(&c);
   solver_report rep;
   const char *at = log;
@@ -161,12 +151,10 @@ START_TEST(entries_are_formed_last) {
     ck_assert_msg(at != NULL, "%s not in its place: %s", order[i], log);
   }
   operated_free(o, &c);
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(refused_memory_is_given_back) {
-  contact_case c = half_block(0.4);
+TESTS(refused_memory_is_given_back, VARIANTS) {
+  CONTACT_CASE c = half_block(0.4);
   operated_case *o = operated_new(&c);
   status st = ERR_MEMORY;
   for (long k = 1; st != OK; ++k) {
@@ -181,18 +169,6 @@ START_TEST(refused_memory_is_given_back) {
     ck_assert_uint_eq(memory_in_use(), before);
   }
   operated_free(o, &c);
-  case_free(&c);
 }
-END_TEST
 
-int main(void) {
-  TCase *all = tcase_create("operated");
-  tcase_set_timeout(all, UNIT_SECONDS);
-  tcase_add_loop_test(all, held_unknowns_are_solved_for_alone, 0, VARIANTS);
-  tcase_add_loop_test(all, variants_solve, 0, VARIANTS);
-  tcase_add_loop_test(all, steps_are_as_many_as_by_the_entries, 0, 4);
-  tcase_add_loop_test(all, factors_of_two_change_no_bit, 0, VARIANTS);
-  tcase_add_test(all, entries_are_formed_last);
-  tcase_add_loop_test(all, refused_memory_is_given_back, 0, VARIANTS);
-  return unit_run("operated", all);
-}
+UNIT_MAIN("operated")

@@ -1,5 +1,4 @@
 /* src/fem: the condensed stiffness as an operator, against its entries. */
-#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"
@@ -32,23 +31,6 @@ static scene *normals_only(void) {
   return s;
 }
 
-static scene *two_bodies(void) {
-  mesh *a = make_grid_2d((int[]){3, 3}, (double[]){1, 1});
-  mesh *b = grid_join(a, a, (double[]){2, 0.25});
-  scene *s = scene_new(b, PLANE_STRAIN, 2);
-  const int contact[] = {1, 2, 17, 18, 19}; /* feet of both */
-  b->group[0].n_node = 5;
-  memcpy(b->group[0].node_id, contact, sizeof contact);
-  scene_contact(s, "BODY", (double[]){0, -1}, 0);
-  for (int c = 0; c < 2; ++c) {
-    scene_fix_node(s, 12, c);
-    scene_fix_node(s, 15, c);
-  }
-  scene_fix_node(s, 16, 0);
-  memory_free(a);
-  return s;
-}
-
 static scene *oblique_3d(void) {
   scene *s = scene_new(make_grid_3d((int[]){3, 2, 3}, (double[]){1, 1, 2}),
                        SOLID_3D, 5);
@@ -57,15 +39,9 @@ static scene *oblique_3d(void) {
   return s;
 }
 
-static scene *floating_3d(void) {
-  scene *s = scene_new(make_grid_3d((int[]){3, 2, 2}, (double[]){1, 1, 2}),
-                       SOLID_3D, 5);
-  scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
-  return s;
-}
-
-static scene *(*const scenes[])(void) = {plain_2d,   held_2d,    normals_only,
-                                         oblique_3d, two_bodies, floating_3d};
+static scene *(*const scenes[])(void) = {plain_2d,         held_2d,
+                                         normals_only,     oblique_3d,
+                                         scene_two_bodies, scene_floating_3d};
 enum {
   SCENES = sizeof scenes / sizeof *scenes,
   FLOATING = SCENES - 1,
@@ -127,10 +103,10 @@ static void same(size_t n, const double *a, const double *b, double tol) {
 }
 
 /* Columns of A; the magnitudes are not below the sum. */
-START_TEST(products_have_the_entries) {
+TESTS(products_have_the_entries, SCENES) {
   both b = both_new(_i);
   const size_t m = (size_t)b.m;
-  double *e = get(m), *column = get(m), *again = get(m), *size = get(m);
+  FREED double *e = get(m), *column = get(m), *again = get(m), *size = get(m);
   for (size_t j = 0; j < m; ++j) {
     e[j] = 1;
     b.op->apply(b.op->ctx, e, column, NULL);
@@ -146,19 +122,14 @@ START_TEST(products_have_the_entries) {
       ck_assert_double_ge(b.op->diagonal[j], b.A[j * (m + 1)] * (1 - 1e-12));
     e[j] = 0;
   }
-  free(e);
-  free(column);
-  free(again);
-  free(size);
   both_free(&b);
 }
-END_TEST
 
 /* (A + added) x = b at the free rows, x given at the others, by LAPACK. */
 static void dense_solve(const both *b, const unsigned char *known,
                         const double *added, const double *rhs, double *x) {
   const size_t m = (size_t)b->m, dim = (size_t)b->dim;
-  double *M = get(m * m), *y = get(m);
+  FREED double *M = get(m * m), *y = get(m);
   for (size_t j = 0; j < m; ++j)
     for (size_t i = 0; i < m; ++i)
       if (!known[i] && !known[j]) M[i + m * j] = b->A[i + m * j];
@@ -177,8 +148,6 @@ static void dense_solve(const both *b, const unsigned char *known,
   ck_assert_int_eq(
       LAPACKE_dposv(LAPACK_COL_MAJOR, 'L', b->m, 1, M, b->m, y, b->m), 0);
   memcpy(x, y, m * sizeof *x);
-  free(M);
-  free(y);
 }
 
 /* Stiffness at the free tangents of each node. */
@@ -193,15 +162,15 @@ static void add_turning(const both *b, const unsigned char *known,
 }
 
 /* Several guesses of the states, one after the other. */
-START_TEST(solves_under_known_rows_are_those_of_the_entries) {
+TESTS(solves_under_known_rows_are_those_of_the_entries, SCENES) {
   both b = both_new(_i);
   const size_t m = (size_t)b.m, dim = (size_t)b.dim;
-  double *x = get(m), *y = get(m), *Ax = get(m), *added = get(dim * m);
-  unsigned char *known = memory_new(m, 1);
+  FREED double *x = get(m), *y = get(m), *Ax = get(m), *added = get(dim * m);
+  OWNED unsigned char *known = memory_new(m, 1);
   for (int k = 0; k < 4; ++k) {
     const int every = k == 0 ? 2 : k + 1; /* 2 twice: other "added" */
     unsigned seed = 11;
-    double *rhs = numbers(m, 7), *Ay = get(m);
+    FREED double *rhs = numbers(m, 7), *Ay = get(m);
     int singular = 1;
     for (size_t i = 0; i < m; ++i) {
       known[i] =
@@ -218,17 +187,9 @@ START_TEST(solves_under_known_rows_are_those_of_the_entries) {
     same(m, x, y, 1e-11);
     b.op->apply(b.op->ctx, y, Ay, NULL);
     same(m, Ax, Ay, 1e-11 * b.size);
-    free(rhs);
-    free(Ay);
   }
-  free(x);
-  free(y);
-  free(Ax);
-  free(added);
-  memory_free(known);
   both_free(&b);
 }
-END_TEST
 
 /* Normals of some nodes known, and the tangents of others. */
 static void some_rows(const both *b, int every, unsigned char *known) {
@@ -239,11 +200,11 @@ static void some_rows(const both *b, int every, unsigned char *known) {
 
 /* A factor of which a part was made again, from one without known rows or with
  * others, and one made at once. */
-START_TEST(factors_made_in_part_have_the_bits_of_whole_ones) {
+TESTS(factors_made_in_part_have_the_bits_of_whole_ones, SCENES) {
   both a = both_new(_i), b = both_new(_i);
   const size_t m = (size_t)a.m, dim = (size_t)a.dim;
   double *rhs = numbers(m, 7), *added = get(dim * m), *x[2], *Ax[2];
-  unsigned char *known = memory_new(m, 1);
+  OWNED unsigned char *known = memory_new(m, 1);
   const known_rows rows = {known, added};
   int singular;
   for (int every = 4; every > 1; --every) {
@@ -268,17 +229,15 @@ START_TEST(factors_made_in_part_have_the_bits_of_whole_ones) {
   }
   free(rhs);
   free(added);
-  memory_free(known);
 }
-END_TEST
 
 /* Of some nodes, to forces at others. */
-START_TEST(responses_are_those_of_solves) {
+TESTS(responses_are_those_of_solves, SCENES) {
   both b = both_new(_i);
   const size_t m = (size_t)b.m, dim = (size_t)b.dim;
-  double *rhs = numbers(m, 7), *x = get(m), *Ax = get(m), *part = get(m),
-         *moved = get(m);
-  unsigned char *known = memory_new(m, 1), *at = memory_new(m, 1);
+  FREED double *rhs = numbers(m, 7), *x = get(m), *Ax = get(m), *part = get(m),
+               *moved = get(m);
+  OWNED unsigned char *known = memory_new(m, 1), *at = memory_new(m, 1);
   const known_rows rows = {known, NULL};
   int singular, all = 0;
   some_rows(&b, 3, known);
@@ -298,21 +257,13 @@ START_TEST(responses_are_those_of_solves) {
       ck_assert_double_eq_tol(part[j], Ax[j], 1e-12);
       ck_assert_double_eq_tol(moved[j], x[j], 1e-12);
     }
-  free(moved);
-  free(rhs);
-  free(x);
-  free(Ax);
-  free(part);
-  memory_free(known);
-  memory_free(at);
   both_free(&b);
 }
-END_TEST
 
 /* With too few rows known the body may move: said, not solved. */
-START_TEST(rows_that_leave_a_motion_are_singular) {
+TEST(rows_that_leave_a_motion_are_singular) {
   both b = both_new(FLOATING);
-  unsigned char *known = memory_new((size_t)b.m, 1);
+  OWNED unsigned char *known = memory_new((size_t)b.m, 1);
   const known_rows rows = {known, NULL};
   int singular = 0;
   for (int i = 0; i < b.m; i += 3) known[i] = 1; /* all normals */
@@ -328,16 +279,14 @@ START_TEST(rows_that_leave_a_motion_are_singular) {
   ck_assert_int_eq(b.op->set_rows(b.op->ctx, &rows, &singular), OK);
   ck_assert_int_eq(singular, 0);
   ck_assert_int_eq(b.op->n_kernel, 6);
-  memory_free(known);
   both_free(&b);
 }
-END_TEST
 
 /* Loads, recovery, energies and errors by both. */
-START_TEST(loads_and_recovery_are_the_same) {
+TESTS(loads_and_recovery_are_the_same, SCENES) {
   both b = both_new(_i);
   const size_t n = b.n, m = (size_t)b.m;
-  double *F = numbers(n, 3), *ud = numbers(n, 4), *uc = numbers(m, 5);
+  FREED double *F = numbers(n, 3), *ud = numbers(n, 4), *uc = numbers(m, 5);
   double *f[2] = {get(m), get(m)}, *u[2] = {get(n), get(n)};
   condensed *c[2] = {b.dense, b.sparse};
   for (int k = 0; k < 2; ++k) {
@@ -352,25 +301,21 @@ START_TEST(loads_and_recovery_are_the_same) {
   const double apart =
       condensed_condition(b.sparse) / condensed_condition(b.dense);
   ck_assert(apart > 0.3 && apart < 3);
-  free(F);
-  free(ud);
-  free(uc);
   for (int k = 0; k < 2; ++k) {
     free(f[k]);
     free(u[k]);
   }
   both_free(&b);
 }
-END_TEST
 
 /* Of bodies that supports hold: inv(A) d, its energy, errors of a residual. */
-START_TEST(energies_and_errors_are_the_same) {
+TESTS(energies_and_errors_are_the_same, HELD) {
   both b = both_new(_i);
   const size_t n = b.n, m = (size_t)b.m;
   double *rest = numbers(n, 3), *d = numbers(m, 5), square[2][3];
   double *u[2] = {get(m), get(m)}, *w[2] = {get(n), get(n)},
          *v[2] = {get(n), get(n)};
-  unsigned char *held = memory_new(m, 1);
+  OWNED unsigned char *held = memory_new(m, 1);
   condensed *c[2] = {b.dense, b.sparse};
   for (size_t i = 0; i < m; ++i) {
     held[i] = i % 3 == 0 || is_held(&b, (int)i);
@@ -395,17 +340,15 @@ START_TEST(energies_and_errors_are_the_same) {
     free(w[k]);
     free(v[k]);
   }
-  memory_free(held);
   both_free(&b);
 }
-END_TEST
 
 /* A power of two in the moduli leaves every bit of a solve. */
-START_TEST(power_of_two_in_the_moduli_leaves_every_bit) {
+TEST(power_of_two_in_the_moduli_leaves_every_bit) {
   double *found[2] = {NULL, NULL};
   for (int k = 0; k < 2; ++k) {
-    scene *s = oblique_3d();
-    stiffness *K = NULL;
+    SCENE *s = oblique_3d();
+    OWNED stiffness *K = NULL;
     condensed *c = NULL;
     int singular;
     for (int i = 0; i < 36; ++i) s->E[i] = ldexp(s->E[i], 40 * k);
@@ -414,47 +357,31 @@ START_TEST(power_of_two_in_the_moduli_leaves_every_bit) {
     ck_assert_int_eq(condense(K, &s->d, &c), OK);
     const contact_operator *op = condensed_operator(c);
     const size_t m = (size_t)(3 * s->surface.n);
-    unsigned char *known = memory_new(m, 1);
+    OWNED unsigned char *known = memory_new(m, 1);
     const known_rows rows = {known, NULL};
-    double *rhs = numbers(m, 9), *Ax = get(m);
+    FREED double *rhs = numbers(m, 9), *Ax = get(m);
     known[0] = known[4] = 1;
     for (size_t i = 0; i < m; ++i) rhs[i] = ldexp(rhs[i], 40 * k);
     found[k] = get(m);
     ck_assert_int_eq(op->set_rows(op->ctx, &rows, &singular), OK);
     op->solve(op->ctx, rhs, found[k], Ax);
     if (k == 1) ck_assert(memcmp(found[0], found[1], m * sizeof *rhs) == 0);
-    free(rhs);
-    free(Ax);
-    memory_free(known);
     condensed_free(c);
-    memory_free(K);
-    scene_free(s);
   }
   free(found[0]);
   free(found[1]);
 }
-END_TEST
 
 static status whole_way(const scene *s) {
-  stiffness *k = NULL;
-  condensed *c = NULL;
   domain d = s->d;
-  const size_t n = (size_t)(s->m->dim * s->m->n_node);
-  double *work = get(3 * n);
+  FREED double *work = get(3 * (size_t)(s->m->dim * s->m->n_node));
   d.sparse = 1;
-  status st = stiffness_assemble(&d, &k);
-  if (st == OK) st = condense(k, &d, &c);
-  if (st == OK) st = condense_load(c, work, NULL, work + n);
-  if (st == OK) st = condense_recover(c, work + n, work + 2 * n);
-  condensed_free(c);
-  memory_free(k);
-  free(work);
-  return st;
+  return scene_whole_way(&d, work, NULL);
 }
 
 /* The solver may do without a block: nothing differs then. */
-START_TEST(every_refused_request_is_survived) {
-  scene *s = oblique_3d();
+TEST(every_refused_request_is_survived) {
+  SCENE *s = oblique_3d();
   const size_t before = memory_in_use();
   long r = 0, made;
   do {
@@ -467,18 +394,16 @@ START_TEST(every_refused_request_is_survived) {
     ck_assert_uint_eq(memory_in_use(), before);
   } while (made > r++);
   ck_assert_int_eq(whole_way(s), OK);
-  scene_free(s);
 }
-END_TEST
 
 /* Both factors: of thin slabs, most of whose unknowns are in contact or only
  * their normal ones. */
-START_TEST(interior_is_expected_without_the_contact) {
+TEST(interior_is_expected_without_the_contact) {
   for (int rows = 1; rows <= 3; rows += 2) {
     const double real = sizeof(double);
-    scene *s = scene_new(make_grid_3d((int[]){14, 14, 2}, (double[]){7, 7, 1}),
+    SCENE *s = scene_new(make_grid_3d((int[]){14, 14, 2}, (double[]){7, 7, 1}),
                          SOLID_3D, 5);
-    stiffness *k = NULL;
+    OWNED stiffness *k = NULL;
     condensed *c = NULL;
     whole_order order;
     scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
@@ -499,26 +424,7 @@ START_TEST(interior_is_expected_without_the_contact) {
                         (rows == 1 ? 0.9 : 0.7) * order.contact_entries);
     memory_free(order.node);
     condensed_free(c);
-    memory_free(k);
-    scene_free(s);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("operator");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, products_have_the_entries, 0, SCENES);
-  tcase_add_loop_test(tests, solves_under_known_rows_are_those_of_the_entries,
-                      0, SCENES);
-  tcase_add_loop_test(tests, factors_made_in_part_have_the_bits_of_whole_ones,
-                      0, SCENES);
-  tcase_add_loop_test(tests, responses_are_those_of_solves, 0, SCENES);
-  tcase_add_test(tests, rows_that_leave_a_motion_are_singular);
-  tcase_add_loop_test(tests, loads_and_recovery_are_the_same, 0, SCENES);
-  tcase_add_loop_test(tests, energies_and_errors_are_the_same, 0, HELD);
-  tcase_add_test(tests, power_of_two_in_the_moduli_leaves_every_bit);
-  tcase_add_test(tests, interior_is_expected_without_the_contact);
-  tcase_add_test(tests, every_refused_request_is_survived);
-  return unit_run("operator", tests);
-}
+UNIT_MAIN("operator")

@@ -1,5 +1,4 @@
 /* src/base/option.c: option tables and the nearest word. */
-#include "base/base.h"
 #include "base/option.h"
 #include "support/unit.h"
 
@@ -21,16 +20,15 @@ static const option table[] = {
 };
 /* clang-format on */
 
-START_TEST(rows_are_found_by_their_full_name) {
+TEST(rows_are_found_by_their_full_name) {
   ck_assert_ptr_eq(option_find(table, "OMEGA"), &table[1]);
   ck_assert_ptr_null(option_find(table, "OMEG"));
   ck_assert_ptr_null(option_find(table, "OMEGAS"));
   ck_assert_ptr_null(option_find(table, "omega"));
   ck_assert_ptr_null(option_find(NULL, "OMEGA"));
 }
-END_TEST
 
-START_TEST(defaults_are_stored) {
+TEST(defaults_are_stored) {
   sample s;
   memset(&s, 0, sizeof s);
   option_defaults(table, &s);
@@ -41,10 +39,9 @@ START_TEST(defaults_are_stored) {
   ck_assert_ptr_null(s.name);
   option_defaults(NULL, &s);
 }
-END_TEST
 
 /* What each wrong value is answered with. */
-START_TEST(wrong_values_are_refused_with_the_range_or_the_words) {
+TEST(wrong_values_are_refused_with_the_range_or_the_words) {
   static const struct {
     const char *name, *text, *why;
   } cases[] = {
@@ -78,9 +75,8 @@ START_TEST(wrong_values_are_refused_with_the_range_or_the_words) {
     ck_assert_int_eq(memcmp(&s, &before, sizeof s), 0);
   }
 }
-END_TEST
 
-START_TEST(right_values_are_read) {
+TEST(right_values_are_read) {
   sample s;
   char why[100];
   memset(&s, 0, sizeof s);
@@ -96,9 +92,8 @@ START_TEST(right_values_are_read) {
   ck_assert_int_eq(option_read(&table[5], "Steel", &s, why, sizeof why), 0);
   ck_assert_str_eq(s.name, "Steel");
 }
-END_TEST
 
-START_TEST(a_long_wrong_value_does_not_overrun_the_message) {
+TEST(a_long_wrong_value_does_not_overrun_the_message) {
   sample s = {0, 0, 0, 0, 0, NULL};
   char text[5000], why[20];
   memset(text, 'A', sizeof text - 1);
@@ -109,9 +104,8 @@ START_TEST(a_long_wrong_value_does_not_overrun_the_message) {
     ck_assert_int_eq(why[sizeof why - 1], '#');
   }
 }
-END_TEST
 
-START_TEST(what_is_written_is_read_back) {
+TEST(what_is_written_is_read_back) {
   sample s = {17, 1, 2, 1.0 / 3, 1e-9 / 7, "Steel 7"}, back;
   memset(&back, 0, sizeof back);
   for (const option *row = table; row->name != NULL; ++row) {
@@ -129,9 +123,8 @@ START_TEST(what_is_written_is_read_back) {
   option_write(&table[5], &s, none, sizeof none);
   ck_assert_str_eq(none, "");
 }
-END_TEST
 
-START_TEST(words_of_a_choice_have_their_rank) {
+TEST(words_of_a_choice_have_their_rank) {
   char text[20];
   ck_assert_int_eq(choice_rank("A|BB|C", "bb"), 1);
   ck_assert_int_eq(choice_rank("A|BB|C", "B"), -1);
@@ -144,7 +137,6 @@ START_TEST(words_of_a_choice_have_their_rank) {
   choice_word("A|BB|C", 2, text, sizeof text);
   ck_assert_str_eq(text, "C");
 }
-END_TEST
 
 static const char *const cards[] = {
     "HEADING", "FRICTION", "CONTACT", "MATERIAL", "ELASTIC", "SOLID SECTION",
@@ -154,7 +146,7 @@ static const char *next_card(const void *ctx, int i) {
   return ((const char *const *)ctx)[i];
 }
 
-START_TEST(nearest_word_is_found_if_it_is_near) {
+TEST(nearest_word_is_found_if_it_is_near) {
   static const struct {
     const char *word, *near;
   } cases[] = {{"FRICTON", "FRICTION"},
@@ -182,23 +174,20 @@ START_TEST(nearest_word_is_found_if_it_is_near) {
                     cases[i].word, near != NULL ? near : "none");
   }
 }
-END_TEST
 
 /* Two letters exchanged are one error, nearer than two others. */
-START_TEST(exchanged_letters_count_once) {
+TEST(exchanged_letters_count_once) {
   static const char *const words[] = {"ABXY", "ABCD", NULL};
   ck_assert_str_eq(nearest_word("ABDC", next_card, words), "ABCD");
   ck_assert_ptr_null(nearest_word("", next_card, words));
 }
-END_TEST
 
-START_TEST(no_word_is_near_where_there_are_no_rows) {
+TEST(no_word_is_near_where_there_are_no_rows) {
   const option *none = NULL;
   ck_assert_ptr_null(nearest_word("TOL", candidate_name, NAMES(none, 0)));
 }
-END_TEST
 
-START_TEST(a_value_that_is_not_finite_is_said_to_be_so) {
+TEST(a_value_that_is_not_finite_is_said_to_be_so) {
   char why[120];
   range_text(INFINITY, DBL_MIN, DBL_MAX, why, sizeof why);
   ck_assert_str_eq(why, "inf is not a finite number");
@@ -207,22 +196,12 @@ START_TEST(a_value_that_is_not_finite_is_said_to_be_so) {
   range_text(NAN, 0, 1, why, sizeof why);
   ck_assert_str_eq(why, "nan is not a finite number");
 }
-END_TEST
 
-START_TEST(a_very_long_word_is_near_to_none) {
+TEST(a_very_long_word_is_near_to_none) {
   char word[10000];
   memset(word, 'A', sizeof word - 1);
   word[sizeof word - 1] = '\0';
   ck_assert_ptr_null(nearest_word(word, next_card, cards));
 }
-END_TEST
 
-UNIT_MAIN("option", rows_are_found_by_their_full_name, defaults_are_stored,
-          wrong_values_are_refused_with_the_range_or_the_words,
-          right_values_are_read,
-          a_long_wrong_value_does_not_overrun_the_message,
-          what_is_written_is_read_back, words_of_a_choice_have_their_rank,
-          nearest_word_is_found_if_it_is_near, exchanged_letters_count_once,
-          no_word_is_near_where_there_are_no_rows,
-          a_value_that_is_not_finite_is_said_to_be_so,
-          a_very_long_word_is_near_to_none)
+UNIT_MAIN("option")

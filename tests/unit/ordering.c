@@ -1,7 +1,6 @@
 /* src/fem/ordering.c: orders are permutations of few operations. */
 #include "fem/ordering.h"
 
-#include "base/base.h"
 #include "support/scene.h"
 #include "support/unit.h"
 
@@ -33,12 +32,11 @@ static void end(setting *t) {
 }
 
 static void is_permutation(int n, const int *node) {
-  char *seen = calloc((size_t)n, 1);
+  FREED char *seen = calloc((size_t)n, 1);
   for (int i = 0; i < n; ++i) {
     ck_assert(node[i] >= 0 && node[i] < n && !seen[node[i]]);
     seen[node[i]] = 1;
   }
-  free(seen);
 }
 
 static status order_flops(const graph *g, int n, const int *node,
@@ -49,7 +47,7 @@ static status order_flops(const graph *g, int n, const int *node,
   return st;
 }
 
-START_TEST(graph_has_both_directions_of_every_element_edge) {
+TEST(graph_has_both_directions_of_every_element_edge) {
   setting t = begin(make_grid_2d((int[]){2, 2}, (double[]){1, 1}));
   /* 9 nodes, 16 edges (12 sides of cells, 4 diagonals). */
   ck_assert_uint_eq(t.g.start[9], 32);
@@ -63,9 +61,8 @@ START_TEST(graph_has_both_directions_of_every_element_edge) {
     }
   end(&t);
 }
-END_TEST
 
-START_TEST(every_method_gives_a_permutation_cheaper_than_the_natural_one) {
+TEST(every_method_gives_a_permutation_cheaper_than_the_natural_one) {
   setting t = begin(make_grid_2d((int[]){40, 40}, (double[]){1, 1}));
   double natural, flops;
   ck_assert_int_eq(order_flops(&t.g, t.n, t.node, &t.cm, &natural), OK);
@@ -79,11 +76,10 @@ START_TEST(every_method_gives_a_permutation_cheaper_than_the_natural_one) {
   }
   end(&t);
 }
-END_TEST
 
 /* A path of n nodes from the left: each column holds 2 entries but the last:
  * 4 (n - 1) + 1 operations. */
-START_TEST(count_of_a_path_is_exact) {
+TEST(count_of_a_path_is_exact) {
   setting t = begin(make_grid_2d((int[]){1, 1}, (double[]){1, 1}));
   int start_next[] = {1, 0, 2, 1, 3, 2};
   size_t start[] = {0, 1, 3, 5, 6};
@@ -94,11 +90,10 @@ START_TEST(count_of_a_path_is_exact) {
   ck_assert_double_eq(flops, 13);
   end(&t);
 }
-END_TEST
 
 /* Of the same path: the columns of a marked node and of those before it that
  * have an entry in its row, and all above. */
-START_TEST(marked_nodes_reach_what_is_above_them) {
+TEST(marked_nodes_reach_what_is_above_them) {
   setting t = begin(make_grid_2d((int[]){1, 1}, (double[]){1, 1}));
   int start_next[] = {1, 0, 2, 1, 3, 2};
   size_t start[] = {0, 1, 3, 5, 6};
@@ -119,9 +114,8 @@ START_TEST(marked_nodes_reach_what_is_above_them) {
   ck_assert_double_eq(cost.marked_entries, 1);
   end(&t);
 }
-END_TEST
 
-START_TEST(squares_are_cut_and_bodies_that_cuts_do_not_suit_go_to_metis) {
+TEST(squares_are_cut_and_bodies_that_cuts_do_not_suit_go_to_metis) {
   setting t = begin(make_grid_2d((int[]){60, 60}, (double[]){1, 1}));
   const char *name = NULL;
   double good, mended;
@@ -131,21 +125,19 @@ START_TEST(squares_are_cut_and_bodies_that_cuts_do_not_suit_go_to_metis) {
   ck_assert_str_eq(name, "coordinate cuts");
   ck_assert_int_eq(order_flops(&t.g, t.n, t.node, &t.cm, &good), OK);
   /* Coordinates that say nothing about the graph. */
-  double *x = calloc(2 * (size_t)t.n, sizeof *x);
+  FREED double *x = calloc(2 * (size_t)t.n, sizeof *x);
   for (int i = 0; i < 2 * t.n; ++i) x[i] = scene_random(&seed);
   ck_assert_int_eq(order_nodes(&t.g, 2, x, t.n, t.node, &t.cm, &name), OK);
   ck_assert_str_eq(name, "METIS");
   is_permutation(t.n, t.node);
   ck_assert_int_eq(order_flops(&t.g, t.n, t.node, &t.cm, &mended), OK);
   ck_assert_double_lt(mended, 1.5 * good);
-  free(x);
   end(&t);
 }
-END_TEST
 
 /* A long strip rolled up: cuts cross all turns and still cost no more than a
  * square of as many nodes. */
-START_TEST(rolled_strip_costs_less_than_a_square) {
+TEST(rolled_strip_costs_less_than_a_square) {
   setting square = begin(make_grid_2d((int[]){60, 60}, (double[]){1, 1}));
   setting strip = begin(make_grid_2d((int[]){600, 5}, (double[]){60, 0.6}));
   const char *name = NULL;
@@ -171,11 +163,10 @@ START_TEST(rolled_strip_costs_less_than_a_square) {
   end(&square);
   end(&strip);
 }
-END_TEST
 
 /* A strip of many nodes whose cells are stretched until it looks square: the
  * extents mislead, the separators do not. */
-START_TEST(large_bodies_are_cut_where_the_separator_is_shortest) {
+TEST(large_bodies_are_cut_where_the_separator_is_shortest) {
   setting t = begin(make_grid_2d((int[]){899, 229}, (double[]){4, 1}));
   double flops[2];
   for (int pass = 0; pass < 2; ++pass) {
@@ -191,11 +182,5 @@ START_TEST(large_bodies_are_cut_where_the_separator_is_shortest) {
   ck_assert_double_lt(flops[1], 2 * flops[0]);
   end(&t);
 }
-END_TEST
 
-UNIT_MAIN("ordering", graph_has_both_directions_of_every_element_edge,
-          every_method_gives_a_permutation_cheaper_than_the_natural_one,
-          count_of_a_path_is_exact, marked_nodes_reach_what_is_above_them,
-          squares_are_cut_and_bodies_that_cuts_do_not_suit_go_to_metis,
-          rolled_strip_costs_less_than_a_square,
-          large_bodies_are_cut_where_the_separator_is_shortest)
+UNIT_MAIN("ordering")

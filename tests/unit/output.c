@@ -2,7 +2,6 @@
 #include "output/output.h"
 #include "output/hdf5/file.h"
 
-#include "base/base.h"
 #include "output/writers.h"
 #include "support/disk.h"
 #include "support/folder.h"
@@ -53,7 +52,7 @@ static const char *const names[] = {"block.lst", "block.sta", "block.cvg",
                                     "block.dat", "block.h5",  "block.xdmf"};
 enum { NAMES = sizeof names / sizeof *names };
 
-START_TEST(two_runs_give_the_same_bytes) {
+TEST(two_runs_give_the_same_bytes) {
   char dir[2][64];
   for (int k = 0; k < 2; ++k) {
     folder_new(dir[k]);
@@ -62,33 +61,28 @@ START_TEST(two_runs_give_the_same_bytes) {
       ck_assert_int_eq(mkdir(dir[k], 0700), 0);
       nanosleep(&(struct timespec){1, 100000000}, NULL);
     }
-    made_up *made = made_up_new(2, 3, 3);
+    MADE_UP *made = made_up_new(2, 3, 3);
     output_options o = quiet(dir[k]);
     ck_assert_int_eq(run(made, &o, 5), OK);
-    made_up_free(made);
   }
   for (int i = 0; i < NAMES; ++i) {
     size_t na, nb;
-    char *a = folder_file(dir[0], names[i], &na);
-    char *b = folder_file(dir[1], names[i], &nb);
+    FREED char *a = folder_file(dir[0], names[i], &na);
+    FREED char *b = folder_file(dir[1], names[i], &nb);
     ck_assert_msg(a != NULL && na > 100, "%s", names[i]);
     ck_assert_msg(b != NULL && na == nb && memcmp(a, b, na) == 0, "%s",
                   names[i]);
     for (size_t k = 0; k + 7 < na; ++k)
       ck_assert_msg(memcmp(a + k, "protis-", 7) != 0, "path in %s", names[i]);
-    free(a);
-    free(b);
   }
   *strrchr(dir[1], '/') = '\0';
   folder_remove(dir[0]);
   folder_remove(dir[1]);
 }
-END_TEST
 
-START_TEST(status_file_has_a_line_per_attempt) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 3);
+TEST(status_file_has_a_line_per_attempt) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 3);
   output_options o = quiet(dir);
   output *out = NULL;
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
@@ -109,17 +103,13 @@ START_TEST(status_file_has_a_line_per_attempt) {
   ck_assert_ptr_nonnull(strstr(text, "\n      3   1 newton"));
   free(text);
   ck_assert_int_eq(output_close(out, OK, 0), OK);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* Each word of the header ends where the numbers below it end, those of words
  * (solver, reason) begin there, and awk counts as many. */
-START_TEST(header_of_the_status_file_stands_over_its_columns) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 3);
+TEST(header_of_the_status_file_stands_over_its_columns) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 3);
   output_options o = quiet(dir);
   output *out = NULL;
   o.no_timing = 0;
@@ -146,15 +136,11 @@ START_TEST(header_of_the_status_file_stands_over_its_columns) {
   ck_assert(row[strstr(head, "solver") - head] == 'n');
   ck_assert(row[strstr(head, "reason") - head] == 'O');
   free(text);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(unsettled_increment_is_seen_everywhere) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 1);
+TEST(unsettled_increment_is_seen_everywhere) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 1);
   output_options o = quiet(dir);
   output *out = NULL;
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
@@ -171,15 +157,11 @@ START_TEST(unsettled_increment_is_seen_everywhere) {
       {"block.json", "\"name\": \"ERR_UNSETTLED\""},
       {"block.json", "\"settled\": false"}};
   for (size_t i = 0; i < sizeof wanted / sizeof *wanted; ++i) {
-    char *text = folder_file(dir, wanted[i][0], NULL);
+    FREED char *text = folder_file(dir, wanted[i][0], NULL);
     ck_assert_msg(strstr(text, wanted[i][1]) != NULL, "%s in %s", wanted[i][1],
                   wanted[i][0]);
-    free(text);
   }
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* ---- JSON, by the grammar of RFC 8259 --------------------------------- */
 
@@ -253,10 +235,9 @@ static char *checked_json(const char *dir) {
   return text;
 }
 
-START_TEST(json_is_valid_whatever_the_texts_and_numbers) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 2);
+TEST(json_is_valid_whatever_the_texts_and_numbers) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 2);
   output_options o = quiet(dir);
   output *out = NULL;
   made->m.name.title =
@@ -271,7 +252,7 @@ START_TEST(json_is_valid_whatever_the_texts_and_numbers) {
   status st = status_fail(ERR_SINGULAR, "f", 1, "body \"A\"\nfree");
   ck_assert_int_eq(output_close(out, st, 0), ERR_SINGULAR);
   ck_assert_str_eq(status_message(), "body \"A\"\nfree");
-  char *text = checked_json(dir);
+  FREED char *text = checked_json(dir);
   ck_assert_ptr_nonnull(
       strstr(text,
              "\"title\": \"tab\\t quote\\\" back\\\\ \xC3\xA9 latin "
@@ -282,14 +263,10 @@ START_TEST(json_is_valid_whatever_the_texts_and_numbers) {
   ck_assert_ptr_nonnull(strstr(text, "\"residual_worst\": null"));
   ck_assert_ptr_nonnull(strstr(text, "\"condition\": null"));
   ck_assert_ptr_null(strstr(text, "\"cpu\""));
-  free(text);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* No number is there twice. */
-START_TEST(json_tells_what_was_left_out) {
+TEST(json_tells_what_was_left_out) {
   static const char *const row[] = {
       "\"why\": \"small\",\n      \"taken_back\": true,\n"
       "      \"not_solved\": false,\n      \"bound\": 0.125,\n"
@@ -299,9 +276,8 @@ START_TEST(json_tells_what_was_left_out) {
       "      \"not_solved\": true,\n      \"bound\": 1.5,\n"
       "      \"stress\": 2.5,\n      \"change\": 3.5,\n"
       "      \"increments\": 8,\n      \"solved_again\": 9\n"};
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 1, 1);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 1, 1);
   output_options o = quiet(dir);
   model *m = &made->m;
   m->reduction.is_auto = 1;
@@ -311,19 +287,14 @@ START_TEST(json_tells_what_was_left_out) {
   m->reduction.row[1] = (omitted){
       EFFECT_BIT_FRICTION, -1, "none", 1.5, 2.5, 3.5, 8, 9, 0, 0.0, 0, 1};
   ck_assert_int_eq(run(made, &o, 1), OK);
-  char *text = checked_json(dir);
+  FREED char *text = checked_json(dir);
   ck_assert_ptr_nonnull(strstr(text, row[0]));
   ck_assert_ptr_nonnull(strstr(text, row[1]));
-  free(text);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(cost_is_shown_unless_left_out) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 2);
+TEST(cost_is_shown_unless_left_out) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 2);
   output_options o = quiet(dir);
   o.no_timing = 0;
   ck_assert_int_eq(run(made, &o, 2), OK);
@@ -336,15 +307,12 @@ START_TEST(cost_is_shown_unless_left_out) {
   text = folder_file(dir, "block.sta", NULL);
   ck_assert_ptr_nonnull(strstr(text, "cpu[s]"));
   free(text);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(xdmf_names_every_record_of_its_file) {
-  char dir[64], name[80];
-  folder_new(dir);
-  made_up *made = made_up_new(3, 2, 3);
+TEST(xdmf_names_every_record_of_its_file) {
+  char name[80];
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(3, 2, 3);
   output_options o = quiet(dir);
   ck_assert_int_eq(run(made, &o, 5), OK);
   char *text = folder_file(dir, "block.xdmf", NULL);
@@ -379,14 +347,11 @@ START_TEST(xdmf_names_every_record_of_its_file) {
   ck_assert_ptr_nonnull(strstr(text, ">block.h5:/fields/u/00005<"));
   ck_assert_ptr_null(strstr(text, "Collection"));
   free(text);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* The grid of the contact surface as the format has it, in the plane and in
  * 3-D; its nodes alone where every neighbour of it was left out. */
-START_TEST(xdmf_names_the_cells_of_the_contact) {
+TEST(xdmf_names_the_cells_of_the_contact) {
 #define ITEM "<DataItem Format=\"HDF\" NumberType="
 #define INTS ITEM "\"Int\" Precision=\"4\" Dimensions="
   static const struct {
@@ -403,8 +368,8 @@ START_TEST(xdmf_names_the_cells_of_the_contact) {
        "Triangle\" NumberOfElements=\"6\">" INTS
        "\"6 3\">a.h5:/contact/faces"}};
   double time = 0.5;
-  char dir[64], path[96], want[600], name[] = "out/a.h5";
-  folder_new(dir);
+  char path[96], want[600], name[] = "out/a.h5";
+  FOLDER(dir);
   snprintf(path, sizeof path, "%s/a.xdmf", dir);
   for (int k = 0; k < 3; ++k) {
     const mesh msh = {.dim = surface[k].corners, .n_node = 9, .n_elem = 7};
@@ -415,7 +380,7 @@ START_TEST(xdmf_names_the_cells_of_the_contact) {
                          .n_record = 1,
                          .times = &time};
     ck_assert_int_eq(xdmf_write(&h, path), OK);
-    char *text = folder_file(dir, "a.xdmf", NULL);
+    FREED char *text = folder_file(dir, "a.xdmf", NULL);
     snprintf(want, sizeof want,
              "<Topology TopologyType=\"%s</DataItem>\n</Topology>\n"
              "<Geometry GeometryType=\"XYZ\">" ITEM
@@ -424,16 +389,12 @@ START_TEST(xdmf_names_the_cells_of_the_contact) {
              surface[k].text);
     ck_assert_msg(strstr(text, want) != NULL, "%s\nhas no\n%s", text, want);
     ck_assert_ptr_nonnull(strstr(text, "<Time Value=\""));
-    free(text);
   }
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(files_of_an_earlier_run_do_not_stay) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 2);
+TEST(files_of_an_earlier_run_do_not_stay) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 2);
   output_options o = quiet(dir);
   output *out = NULL;
   ck_assert_int_eq(run(made, &o, 2), OK);
@@ -443,15 +404,11 @@ START_TEST(files_of_an_earlier_run_do_not_stay) {
   for (int i = 0; i < 3; ++i)
     ck_assert_msg(folder_file(dir, gone[i], NULL) == NULL, "%s", gone[i]);
   ck_assert_int_eq(output_close(out, OK, 0), OK);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(run_that_never_became_ready_has_a_verdict) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 2);
+TEST(run_that_never_became_ready_has_a_verdict) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 2);
   output_options o = quiet(dir);
   output *out = NULL;
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
@@ -464,20 +421,16 @@ START_TEST(run_that_never_became_ready_has_a_verdict) {
   ck_assert_ptr_nonnull(strstr(text, "nothing holds body 1"));
   free(text);
   ck_assert_int_eq(output_close(NULL, ERR_MESH, 0), ERR_MESH);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* ---- failures --------------------------------------------------------- */
 
-START_TEST(full_disk_of_any_text_file_is_told_and_the_others_are_kept) {
+TEST(full_disk_of_any_text_file_is_told_and_the_others_are_kept) {
   const char *const files[] = {"block.lst", "block.sta", "block.cvg",
                                "block.dat"};
   for (int k = 0; k < 4; ++k) {
-    char dir[64];
-    folder_new(dir);
-    made_up *made = made_up_new(2, 2, 2);
+    FOLDER(dir);
+    MADE_UP *made = made_up_new(2, 2, 2);
     output_options o = quiet(dir);
     output *out = NULL;
     ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
@@ -488,26 +441,21 @@ START_TEST(full_disk_of_any_text_file_is_told_and_the_others_are_kept) {
     ck_assert_msg(strstr(status_message(), files[k]) != NULL, "%s: %s",
                   files[k], status_message());
     ck_assert_ptr_nonnull(strstr(status_message(), "No space left"));
-    char *text = checked_json(dir);
+    FREED char *text = checked_json(dir);
     ck_assert_ptr_nonnull(strstr(text, "\"name\": \"ERR_FILE\""));
-    free(text);
-    made_up_free(made);
-    folder_remove(dir);
   }
 }
-END_TEST
 
 /* Listing and JSON, as far as they are whole, have that exit code. */
 static void ck_code(const char *dir, int code) {
   static const char *const files[][2] = {{"block.lst", "\n  exit "},
                                          {"block.json", "\"code\": "}};
   for (int k = 0; k < 2; ++k) {
-    char *text = folder_file(dir, files[k][0], NULL);
+    FREED char *text = folder_file(dir, files[k][0], NULL);
     const char *at = text != NULL ? strstr(text, files[k][1]) : NULL;
     if (at != NULL)
       ck_assert_msg(atoi(at + strlen(files[k][1])) == code, "%s: not %d",
                     files[k][0], code);
-    free(text);
   }
 }
 
@@ -515,8 +463,7 @@ static void ck_code(const char *dir, int code) {
  * and JSON may not be written (again): the k-th request is refused. 1: it was.
  */
 static int end_on_full_disk(made_up *made, int late, long k) {
-  char dir[64];
-  folder_new(dir);
+  FOLDER(dir);
   output_options o = quiet(dir);
   output *out = NULL;
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
@@ -531,43 +478,35 @@ static int end_on_full_disk(made_up *made, int late, long k) {
   disk_fill_after(NULL, NULL);
   ck_assert_msg(st == ERR_FILE || st == ERR_MEMORY, "%s", status_message());
   ck_code(dir, status_exit_code(st));
-  char *text = k > 0 ? NULL : checked_json(dir);
+  FREED char *text = k > 0 ? NULL : checked_json(dir);
   if (k == 0) ck_assert_ptr_nonnull(strstr(text, "block.lst: cannot write"));
-  free(text);
-  folder_remove(dir);
   return k <= memory_requests() - first;
 }
 
-START_TEST(full_disk_at_the_end_is_told) {
-  made_up *made = made_up_new(2, 2, 2);
+TEST(full_disk_at_the_end_is_told) {
+  MADE_UP *made = made_up_new(2, 2, 2);
   for (int late = 0; late < 2; ++late)
     for (long k = 0; end_on_full_disk(made, late, k);) ++k;
-  made_up_free(made);
 }
-END_TEST
 
 /* What bears the name of a file that is made aside. */
-START_TEST(files_made_aside_are_told) {
+TEST(files_made_aside_are_told) {
   const char *const files[] = {"block.json.tmp", "block.xdmf.tmp"};
   for (int k = 0; k < 2; ++k) {
-    char dir[64], path[100];
-    folder_new(dir);
-    snprintf(path, sizeof path, "%s/%s", dir, files[k]);
+    FOLDER(dir);
+    PRINTED(path, "%s/%s", dir, files[k]);
     ck_assert_int_eq(mkdir(path, 0700), 0);
-    made_up *made = made_up_new(2, 2, 2);
+    MADE_UP *made = made_up_new(2, 2, 2);
     output_options o = quiet(dir);
     ck_assert_msg(run(made, &o, 2) == ERR_FILE, "%s", files[k]);
     ck_assert_msg(strstr(status_message(), files[k]) != NULL, "%s: %s",
                   files[k], status_message());
     ck_code(dir, 4);
-    made_up_free(made);
-    folder_remove(dir);
   }
 }
-END_TEST
 
-START_TEST(folder_that_cannot_be_written_is_told) {
-  made_up *made = made_up_new(2, 2, 2);
+TEST(folder_that_cannot_be_written_is_told) {
+  MADE_UP *made = made_up_new(2, 2, 2);
   const char *const dirs[] = {"/no/such/folder", "/proc", "/dev/null"};
   for (int k = 0; k < 3; ++k) {
     output_options o = quiet(dirs[k]);
@@ -578,15 +517,12 @@ START_TEST(folder_that_cannot_be_written_is_told) {
     ck_assert_ptr_nonnull(strstr(status_message(), dirs[k]));
     ck_assert_uint_eq(memory_in_use(), before);
   }
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(every_refused_request_is_told_and_leaves_nothing) {
-  char dir[64];
+TEST(every_refused_request_is_told_and_leaves_nothing) {
   int refused = 0;
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, 2);
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 2);
   output_options o = quiet(dir);
   size_t before = memory_in_use();
   for (long k = 1;; ++k) {
@@ -601,28 +537,21 @@ START_TEST(every_refused_request_is_told_and_leaves_nothing) {
     if (memory_requests() - first < k) break;
   }
   ck_assert_int_gt(refused, 40);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(output_changes_nothing_it_is_given) {
-  char dir[64];
-  folder_new(dir);
-  made_up *made = made_up_new(3, 2, 2);
+TEST(output_changes_nothing_it_is_given) {
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(3, 2, 2);
   output_options o = quiet(dir);
   ck_assert_int_eq(run(made, &o, 2), OK);
   for (int a = 0; a < MADE_ARRAYS; ++a)
     for (int i = 0; i < made->count[a]; ++i)
       ck_assert(made->array[a][i] == made_up_value(a, i, 2));
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* stderr is a file here, as in a batch job. */
 /* What is left takes as long an increment as what is done. */
-START_TEST(progress_foresees_the_time_left) {
+TEST(progress_foresees_the_time_left) {
   static const struct {
     double seconds;
     int done;
@@ -634,9 +563,8 @@ START_TEST(progress_foresees_the_time_left) {
   const model m = {.n.step = 1, .steps = &only};
   const state s = {
       .t = 3.0, .dt = 1.0, .step_no = 1, .increment_no = 3, .total_no = 3};
-  char dir[64], path[80];
-  folder_new(dir);
-  snprintf(path, sizeof path, "%s/errors", dir);
+  FOLDER(dir);
+  PRINTED(path, "%s/errors", dir);
   fflush(stderr);
   int kept = dup(STDERR_FILENO);
   FILE *errors = fopen(path, "w");
@@ -651,15 +579,12 @@ START_TEST(progress_foresees_the_time_left) {
     at = strstr(at, cases[k].told);
   ck_assert_msg(at != NULL, "%s", text);
   free(text);
-  folder_remove(dir);
 }
-END_TEST
 
-START_TEST(no_progress_line_where_there_is_no_terminal) {
-  char dir[64], path[80];
-  folder_new(dir);
-  snprintf(path, sizeof path, "%s/errors", dir);
-  made_up *made = made_up_new(2, 2, 2);
+TEST(no_progress_line_where_there_is_no_terminal) {
+  FOLDER(dir);
+  PRINTED(path, "%s/errors", dir);
+  MADE_UP *made = made_up_new(2, 2, 2);
   output_options o = quiet(dir);
   o.progress = 1;
   fflush(stderr);
@@ -672,17 +597,13 @@ START_TEST(no_progress_line_where_there_is_no_terminal) {
   close(kept);
   fclose(errors);
   ck_assert_int_eq(st, OK);
-  char *text = folder_file(dir, "errors", NULL);
+  FREED char *text = folder_file(dir, "errors", NULL);
   ck_assert_str_eq(text, "");
-  free(text);
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
 /* Each way a solver can stop has a code of its own in .sta, .cvg and JSON, for
  * an increment that is taken and for one that is cut. */
-START_TEST(reasons_of_stopping_are_told_apart) {
+TEST(reasons_of_stopping_are_told_apart) {
   static const struct {
     outcome o;
     const char *code;
@@ -694,9 +615,9 @@ START_TEST(reasons_of_stopping_are_told_apart) {
               {STOPPED_SINGULAR, "SINGULAR"},
               {STOPPED_UNFIT, "UNFIT"}};
   enum { ENDS = sizeof ends / sizeof *ends };
-  char dir[64], line[64];
-  folder_new(dir);
-  made_up *made = made_up_new(2, 2, ENDS);
+  char line[64];
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, ENDS);
   output_options o = quiet(dir);
   output *out = NULL;
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
@@ -717,31 +638,14 @@ START_TEST(reasons_of_stopping_are_told_apart) {
         {"block.cvg", " ended: newton %s ("},
         {"block.json", "\"outcome\": \"%s\""}};
     for (size_t f = 0; f < sizeof forms / sizeof *forms; ++f) {
-      char *text = folder_file(dir, forms[f][0], NULL);
+      FREED char *text = folder_file(dir, forms[f][0], NULL);
       const char *mark = strstr(forms[f][1], "%s");
       snprintf(line, sizeof line, "%.*s%s%s", (int)(mark - forms[f][1]),
                forms[f][1], ends[k].code, mark + 2);
       ck_assert_msg(strstr(text, line) != NULL, "no '%s' in %s", line,
                     forms[f][0]);
-      free(text);
     }
   }
-  made_up_free(made);
-  folder_remove(dir);
 }
-END_TEST
 
-UNIT_MAIN(
-    "output", two_runs_give_the_same_bytes, status_file_has_a_line_per_attempt,
-    header_of_the_status_file_stands_over_its_columns,
-    unsettled_increment_is_seen_everywhere, reasons_of_stopping_are_told_apart,
-    json_is_valid_whatever_the_texts_and_numbers, json_tells_what_was_left_out,
-    cost_is_shown_unless_left_out, xdmf_names_every_record_of_its_file,
-    xdmf_names_the_cells_of_the_contact, files_of_an_earlier_run_do_not_stay,
-    run_that_never_became_ready_has_a_verdict,
-    full_disk_of_any_text_file_is_told_and_the_others_are_kept,
-    full_disk_at_the_end_is_told, files_made_aside_are_told,
-    folder_that_cannot_be_written_is_told,
-    every_refused_request_is_told_and_leaves_nothing,
-    output_changes_nothing_it_is_given, progress_foresees_the_time_left,
-    no_progress_line_where_there_is_no_terminal)
+UNIT_MAIN("output")

@@ -1,6 +1,5 @@
 /* src/contact/pair.c: which nodes of two surfaces are in a pair, what the rows
  * of the contact surface are relative to, messages. Surfaces without bodies. */
-#include "base/base.h"
 #include "support/faces.h"
 #include "support/unit.h"
 
@@ -139,8 +138,8 @@ static void check_forces(const contact_surface *s, int n_node) {
 
 /* Pairs side by side: a common node is of the earlier one. The displacements
  * (x, 2 x) move all alike. */
-START_TEST(node_of_two_pairs_is_of_the_first) {
-  face_scene c;
+TEST(node_of_two_pairs_is_of_the_first) {
+  FACE_SCENE c;
   faces_begin(&c, 2);
   for (int p = 0; p < 3; ++p) {
     int first = c.m.n_face;
@@ -166,19 +165,17 @@ START_TEST(node_of_two_pairs_is_of_the_first) {
     }
   }
   for (int p = 1; p < 3; ++p) ck_assert_int_eq(c.pair[p].coupled->n, 3);
-  faces_end(&c);
 }
-END_TEST
 
 /* Three masters below one node, whose joints lie within its faces: its gap is
  * the mean of theirs by area, 1/8, 3/4, 1/8 of 1; also where the middle one
  * leans a little, not where it has
  * another clearance: then no node is left to it. */
-START_TEST(node_above_three_masters_has_the_mean_gap) {
+TESTS(node_above_three_masters_has_the_mean_gap, 4) {
   static const double end[] = {1.5, 0.5, -0.5, -1.5}, lean[] = {0, 0, 1e-2, 0};
   const quantity change = {.number = 0.1};
   const int differs = _i == 1, held = _i == 3;
-  face_scene c;
+  FACE_SCENE c;
   faces_begin(&c, 2);
   add_line(&c, 2, (double[]){-1, 0}, (double[]){1, 0});
   c.fixed[0] = held ? 2 : 0;
@@ -202,14 +199,12 @@ START_TEST(node_above_three_masters_has_the_mean_gap) {
     ck_assert_double_eq_tol(c.s->gap0[q], 0.1, 1e-14);
     ck_assert_double_eq_tol(c.s->area[q], q == 1 ? 1.0 : 0.5, 1e-14);
   }
-  faces_end(&c);
 }
-END_TEST
 
 /* The normal that counts is that of the common node, at the other end of a bent
  * slave. */
-START_TEST(normals_are_compared_where_the_pairs_meet) {
-  face_scene c;
+TEST(normals_are_compared_where_the_pairs_meet) {
+  FACE_SCENE c;
   faces_begin(&c, 2);
   add_line(&c, 4, (double[]){0, 1}, (double[]){0, 0});
   add_line(&c, 4, (double[]){0, 0}, (double[]){1, 0});
@@ -224,9 +219,7 @@ START_TEST(normals_are_compared_where_the_pairs_meet) {
   ck_assert_int_eq(build(&c), OK);
   ck_assert_int_eq(c.pair[1].coupled->n, 4);
   for (int q = 0; q < c.s->n; ++q) ck_assert_int_eq(c.s->side_id[q], -1);
-  faces_end(&c);
 }
-END_TEST
 
 /* Four edges on three. */
 static void flat_pair(face_scene *c) {
@@ -237,8 +230,8 @@ static void flat_pair(face_scene *c) {
   add_pair(c, slave, group_from(c, "MASTER", 4));
 }
 
-START_TEST(nodes_held_along_the_normal_are_left_to_their_neighbours) {
-  face_scene c;
+TEST(nodes_held_along_the_normal_are_left_to_their_neighbours) {
+  FACE_SCENE c;
   flat_pair(&c);
   c.fixed[0] = c.fixed[4] = 2;
   ck_assert_int_eq(build(&c), OK);
@@ -255,15 +248,13 @@ START_TEST(nodes_held_along_the_normal_are_left_to_their_neighbours) {
   ck_assert_double_eq_tol(area, 1, 1e-14);
   ck_assert_int_eq(c.pair[0].coupled->n_dropped, 2);
   check_forces(c.s, c.m.n_node);
-  faces_end(&c);
 }
-END_TEST
 
 /* The slave moved by (1/2, 1/16): coupled there with UPDATE, three of its nodes
  * meet the master; the gap is that of time 0 all the same. */
-START_TEST(moved_slave_has_the_gap_of_its_start) {
+TEST(moved_slave_has_the_gap_of_its_start) {
   for (int update = 0; update < 2; ++update) {
-    face_scene c;
+    FACE_SCENE c;
     double u[2 * FACES_MAX] = {0}, w[2 * FACES_MAX];
     flat_pair(&c);
     for (int i = 0; i < 5; ++i) u[2 * i] = 0.5, u[2 * i + 1] = 0.0625;
@@ -277,17 +268,15 @@ START_TEST(moved_slave_has_the_gap_of_its_start) {
       ck_assert_double_eq_tol(c.s->gap0[q], 0.1, 1e-14);
       ck_assert_double_eq_tol(w[2 * q], -0.0625, 1e-14);
     }
-    faces_end(&c);
   }
 }
-END_TEST
 
 /* ---- rows ---------------------------------------------------------------- */
 
 /* It is where supports hold the masters too, and do not tie them. */
-START_TEST(held_tangent_is_relative_to_none) {
+TEST(held_tangent_is_relative_to_none) {
   for (int k = 0; k < 3; ++k) { /* masters are free, held, tied */
-    face_scene c;
+    FACE_SCENE c;
     int tied[FACES_MAX];
     flat_pair(&c);
     c.fixed[0] = 1;
@@ -304,10 +293,8 @@ START_TEST(held_tangent_is_relative_to_none) {
       ck_assert_double_eq_tol(part_sum(&c, q, 0), 1, 1e-14);
       ck_assert_double_eq_tol(part_sum(&c, q, 1), q != 0 || k == 1, 1e-14);
     }
-    faces_end(&c);
   }
 }
-END_TEST
 
 static const double lean[3] = {-0.3, 0, 1};
 
@@ -332,12 +319,12 @@ static void build_edge(face_scene *c, int with_wall, double from,
 }
 
 /* Each normal has its own partner, the tangent along the edge none. */
-START_TEST(rows_at_an_edge_are_relative_to_their_own_partner) {
+TESTS(rows_at_an_edge_are_relative_to_their_own_partner, 2) {
   static const double floor[3] = {1, 2, 3}, wall[3] = {4, 5, 6};
   const double length = sqrt(1.09);
   const int with_wall = _i;
   int first[2];
-  face_scene c;
+  FACE_SCENE c;
   build_edge(&c, with_wall, 0, first);
   double u[3 * FACES_MAX] = {0}, w[3 * FACES_MAX];
   for (int i = first[0]; i < c.m.n_node; ++i)
@@ -360,13 +347,11 @@ START_TEST(rows_at_an_edge_are_relative_to_their_own_partner) {
   }
   ck_assert_int_eq(n_edge, 3);
   check_forces(c.s, c.m.n_node);
-  faces_end(&c);
 }
-END_TEST
 
 /* What the floor covers of a node, and where the force of its row acts, are the
  * same with a wall beside it. */
-START_TEST(floor_covers_what_it_does_without_a_wall) {
+TEST(floor_covers_what_it_does_without_a_wall) {
   face_scene c[2];
   int first[2], n_edge = 0;
   for (int k = 0; k < 2; ++k) build_edge(&c[k], k, 0.25, first);
@@ -385,11 +370,10 @@ START_TEST(floor_covers_what_it_does_without_a_wall) {
   ck_assert_int_eq(n_edge, 3);
   for (int k = 0; k < 2; ++k) faces_end(&c[k]);
 }
-END_TEST
 
-START_TEST(normal_is_the_mean_or_that_of_the_slave) {
+TESTS(normal_is_the_mean_or_that_of_the_slave, 2) {
   const double slope = 0.1, angle = _i ? atan(slope) : 0.5 * atan(slope);
-  face_scene c;
+  FACE_SCENE c;
   faces_begin(&c, 2);
   add_line(&c, 4, (double[]){0, 0.1}, (double[]){1, 0.1 + slope});
   const mesh_group *slave = group_from(&c, "SLAVE", 0);
@@ -402,20 +386,18 @@ START_TEST(normal_is_the_mean_or_that_of_the_slave) {
     ck_assert_double_eq_tol(c.s->frame[4 * q], sin(angle), 1e-14);
     ck_assert_double_eq_tol(c.s->frame[4 * q + 1], -cos(angle), 1e-14);
   }
-  faces_end(&c);
 }
-END_TEST
 
 /* ---- messages ------------------------------------------------------------ */
 
 /* n edges on one; in two that meet at an angle where the slave is curved. */
-START_TEST(coarse_masters_are_told) {
+TESTS(coarse_masters_are_told, 4) {
   static const struct {
     int n;
     double bend;
     int told;
   } cases[] = {{3, 0, 0}, {5, 0, 1}, {3, 0.1, 1}, {1, 0.1, 0}};
-  face_scene c;
+  FACE_SCENE c;
   faces_begin(&c, 2);
   const double y = cases[_i].bend;
   add_line(&c, cases[_i].n, (double[]){0, y}, (double[]){1, 0});
@@ -427,16 +409,14 @@ START_TEST(coarse_masters_are_told) {
   add_pair(&c, slave, group_from(&c, "MASTER", first));
   ck_assert_int_eq(build(&c), OK);
   ck_assert_int_eq(faces_said(&c, "P4024"), cases[_i].told);
-  faces_end(&c);
 }
-END_TEST
 
 /* Two meshes of a curve that is the steeper the farther from x = 0, where a
  * support makes a plane of symmetry: the end bends as its other half does. */
-START_TEST(curves_go_on_behind_planes_of_symmetry) {
+TEST(curves_go_on_behind_planes_of_symmetry) {
   double apart[2];
   for (int held = 0; held < 2; ++held) {
-    face_scene c;
+    FACE_SCENE c;
     faces_begin(&c, 2);
     add_line(&c, 4, (double[]){0, 0}, (double[]){1, 0});
     const mesh_group *slave = group_from(&c, "SLAVE", 0);
@@ -450,14 +430,12 @@ START_TEST(curves_go_on_behind_planes_of_symmetry) {
     ck_assert_int_eq(build(&c), OK);
     ck_assert_int_eq(c.s->node_id[0], 0);
     apart[held] = fabs(c.s->gap0[0]);
-    faces_end(&c);
   }
   ck_assert_double_le(apart[1], 0.3 * apart[0]);
 }
-END_TEST
 
-START_TEST(surfaces_that_do_not_meet_are_an_error) {
-  face_scene c;
+TEST(surfaces_that_do_not_meet_are_an_error) {
+  FACE_SCENE c;
   faces_begin(&c, 2);
   add_line(&c, 4, (double[]){0, 0}, (double[]){1, 0});
   const mesh_group *slave = group_from(&c, "SLAVE", 0);
@@ -465,38 +443,15 @@ START_TEST(surfaces_that_do_not_meet_are_an_error) {
   add_pair(&c, slave, group_from(&c, "MASTER", 4));
   ck_assert_int_eq(build(&c), ERR_DECK);
   ck_assert(faces_said(&c, "P4023"));
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(pair_whose_nodes_are_all_held_is_an_error) {
-  face_scene c;
+TEST(pair_whose_nodes_are_all_held_is_an_error) {
+  FACE_SCENE c;
   flat_pair(&c);
   memset(c.fixed, 2, 5);
   ck_assert_int_eq(build(&c), ERR_DECK);
   ck_assert(faces_said(&c, "P4010"));
   ck_assert(!faces_said(&c, "P4023"));
-  faces_end(&c);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("pair");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_test(tests, node_of_two_pairs_is_of_the_first);
-  tcase_add_loop_test(tests, node_above_three_masters_has_the_mean_gap, 0, 4);
-  tcase_add_test(tests, normals_are_compared_where_the_pairs_meet);
-  tcase_add_test(tests,
-                 nodes_held_along_the_normal_are_left_to_their_neighbours);
-  tcase_add_test(tests, moved_slave_has_the_gap_of_its_start);
-  tcase_add_test(tests, held_tangent_is_relative_to_none);
-  tcase_add_loop_test(tests, rows_at_an_edge_are_relative_to_their_own_partner,
-                      0, 2);
-  tcase_add_test(tests, floor_covers_what_it_does_without_a_wall);
-  tcase_add_loop_test(tests, normal_is_the_mean_or_that_of_the_slave, 0, 2);
-  tcase_add_loop_test(tests, coarse_masters_are_told, 0, 4);
-  tcase_add_test(tests, curves_go_on_behind_planes_of_symmetry);
-  tcase_add_test(tests, surfaces_that_do_not_meet_are_an_error);
-  tcase_add_test(tests, pair_whose_nodes_are_all_held_is_an_error);
-  return unit_run("pair", tests);
-}
+UNIT_MAIN("pair")

@@ -1,7 +1,6 @@
 /* The last touch of an answer: slip too short for the residual to see. */
 #include "solver/choice/choice.h"
 
-#include "base/base.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
@@ -33,9 +32,9 @@ static double angle_of(const double *a) { return atan2(a[2], a[1]); }
 
 /* The slip is off by ASIDE across its direction, SHORT/ASIDE of a radian, at a
  * residual below the tolerance: the touch finds the direction. */
-START_TEST(short_slip_gets_its_direction) {
+TEST(short_slip_gets_its_direction) {
   double u[M], r[M];
-  contact_case c = short_slip(u, r);
+  CONTACT_CASE c = short_slip(u, r);
   int sweeps = 0;
   u[1] -= ASIDE * sin(ANGLE);
   u[2] += ASIDE * cos(ANGLE);
@@ -58,14 +57,12 @@ START_TEST(short_slip_gets_its_direction) {
   ck_assert_double_le(contact_residual(&c.cp, u, r), TOL);
   double size = hypot(r[1], r[2]);
   ck_assert_double_le(fabs(u[1] * r[2] - u[2] * r[1]), 1e-10 * SHORT * size);
-  case_free(&c);
 }
-END_TEST
 
 /* A better direction that misses the tolerance of the forces is not taken. */
-START_TEST(state_beyond_the_tolerance_is_left) {
+TEST(state_beyond_the_tolerance_is_left) {
   double u[M], r[M], kept[M];
-  contact_case c = short_slip(u, r);
+  CONTACT_CASE c = short_slip(u, r);
   int sweeps = 0;
   u[1] = SHORT * cos(ANGLE + 0.5);
   u[2] = SHORT * sin(ANGLE + 0.5);
@@ -75,17 +72,15 @@ START_TEST(state_beyond_the_tolerance_is_left) {
   ck_assert_int_eq(polish_slip(&c.cp, TOL, 1, u, r, &sweeps), OK);
   ck_assert_int_eq(sweeps, 1);
   ck_assert_mem_eq(kept, u, sizeof u);
-  case_free(&c);
 }
-END_TEST
 
 /* Sticking nodes entered the obstacle and slid by no more than the residual can
  * see: they are put back, and only then; the one that slips stays, also that
  * before a wall, which has no friction, and the last, which is open, keeps no
  * force. */
-START_TEST(held_nodes_lie_on_the_obstacle) {
+TEST(held_nodes_lie_on_the_obstacle) {
   double u[M], r[M];
-  contact_case c = short_slip(u, r);
+  CONTACT_CASE c = short_slip(u, r);
   enum { OPEN = M - 3, WALL = M - 6 };
   double side[2 * NODES];
   for (int i = 0; i < 2 * NODES; ++i) side[i] = i == 8 ? 1 : HUGE_VAL;
@@ -120,14 +115,12 @@ START_TEST(held_nodes_lie_on_the_obstacle) {
   ck_assert_int_eq(polish_touch(&c.cp, scale, TOL, u, r, &residual), OK);
   ck_assert(residual == -1);
   ck_assert(u[1] == kept && u[3] != c.gap[1]);
-  case_free(&c);
 }
-END_TEST
 
 /* An exact answer is left as it is, in the plane any. */
-START_TEST(exact_answer_is_left_alone) {
+TEST(exact_answer_is_left_alone) {
   double u[M], r[M], kept[M];
-  contact_case c = short_slip(u, r), plane = case_any(2, NODES, 0.5, 0, 3);
+  CONTACT_CASE c = short_slip(u, r), plane = case_any(2, NODES, 0.5, 0, 3);
   int sweeps = 1;
   memcpy(kept, u, sizeof u);
   ck_assert_double_le(slip_misdirection(&c.cp, u, r), TOL);
@@ -135,16 +128,13 @@ START_TEST(exact_answer_is_left_alone) {
   ck_assert_int_eq(sweeps, 0);
   ck_assert_int_eq(memcmp(kept, u, sizeof u), 0);
   ck_assert(slip_misdirection(&plane.cp, plane.u, plane.r) == 0.0);
-  case_free(&c);
-  case_free(&plane);
 }
-END_TEST
 
 /* What every row hands out, in both forms; the compliance form rounds u to
  * 2^-52 of the largest and the direction to that over the slip. */
-START_TEST(rows_hand_out_the_direction) {
+TEST(rows_hand_out_the_direction) {
   double u[M], r[M], W[M * M], q[M];
-  contact_case c = short_slip(u, r);
+  CONTACT_CASE c = short_slip(u, r);
   const solver_ops *ops;
   ck_assert(case_inverse(M, c.A, W));
   contact_product(M, W, c.f, q);
@@ -163,10 +153,6 @@ START_TEST(rows_hand_out_the_direction) {
                               1e-14);
     }
   }
-  case_free(&c);
 }
-END_TEST
 
-UNIT_MAIN("polish", short_slip_gets_its_direction,
-          state_beyond_the_tolerance_is_left, held_nodes_lie_on_the_obstacle,
-          exact_answer_is_left_alone, rows_hand_out_the_direction)
+UNIT_MAIN("polish")

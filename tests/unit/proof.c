@@ -2,7 +2,6 @@
  * src/solver/choice/proof.c: no equilibrium is said where an inequality proves
  * it and only there, by every method, on both sides of the limit.
  */
-#include "base/base.h"
 #include "base/sparse.h"
 #include "solver/choice/choice.h"
 #include "support/solver_rows.h"
@@ -31,7 +30,7 @@ static void add_spring(contact_case *c, int i, int j, const double *x) {
 /* Row a of the stiffness in the frame of its node. */
 static void turn(contact_case *c, const double *frame) {
   int dim = c->cp.dim, m = c->cp.m;
-  double *A = calloc((size_t)m * (size_t)m, sizeof *A);
+  FREED double *A = calloc((size_t)m * (size_t)m, sizeof *A);
   for (int a = 0; a < m; ++a)
     for (int b = 0; b < m; ++b)
       for (int k = 0; k < dim * dim; ++k)
@@ -39,7 +38,6 @@ static void turn(contact_case *c, const double *frame) {
             frame[a * dim + k / dim] * frame[b * dim + k % dim] *
             c->A[a / dim * dim + k / dim + m * (b / dim * dim + k % dim)];
   memcpy(c->A, A, sizeof *A * (size_t)m * (size_t)m);
-  free(A);
 }
 
 /* n nodes at random places, all joined; normals off the first axis by up to
@@ -72,11 +70,11 @@ static int is_proved(const contact_case *c) {
 }
 
 /* Forces of the nodes hold the body, though all be at their limit. */
-START_TEST(balanced_load_has_no_proof) {
+TEST(balanced_load_has_no_proof) {
   unsigned long long seed = 77;
   for (int k = 0; k < 400; ++k) {
     int dim = 2 + k % 2, n = 3 + k % 20;
-    contact_case c = body(dim, n, 0.1 + 0.7 * case_random(&seed), 1.5, &seed);
+    CONTACT_CASE c = body(dim, n, 0.1 + 0.7 * case_random(&seed), 1.5, &seed);
     if (k % 4 > 1) case_average(&c, 2, 0.5);
     for (int i = 0; i < n; ++i) {
       c.g0[i] = 0.2 * case_random(&seed);
@@ -90,39 +88,35 @@ START_TEST(balanced_load_has_no_proof) {
       if (dim == 3) c.f[i * dim + 2] = g * sin(a);
     }
     ck_assert_msg(!is_proved(&c), "%d", k);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A pull is one, unless it is below the rounding of the loads to come, or of
  * the motion so far. */
-START_TEST(rounding_of_the_load_proves_nothing) {
+TEST(rounding_of_the_load_proves_nothing) {
   unsigned long long seed = 5;
   for (int k = 0; k < 64; ++k) {
     const int dim = 2 + k % 2, n = 3 + k % 9, tiny = k / 2 % 2,
               known = k / 4 % 2;
-    contact_case c = body(dim, n, 0.3, 0.0, &seed);
+    CONTACT_CASE c = body(dim, n, 0.3, 0.0, &seed);
     for (int i = 0; i < n; ++i) c.f[i * dim] = tiny ? -1e-15 : -1e-13;
     if (k < 32)
       c.cp.load = known;
     else
       c.cp.moved = 2.0 * known / contact_diagonal(&c.cp, 0);
     ck_assert_int_eq(is_proved(&c), !(tiny && known));
-    case_free(&c);
   }
 }
-END_TEST
 
 /* All nodes on one plane, the load at each outside its limit by a little, or
  * inside, in any direction of the plane. */
-START_TEST(limit_of_friction_is_met_from_both_sides) {
+TEST(limit_of_friction_is_met_from_both_sides) {
   static const double off[] = {1e-1, 1e-3, 1e-6, 1e-8};
   unsigned long long seed = 4;
   for (int k = 0; k < 64; ++k) {
     double mu = 0.1 + case_random(&seed), a = 6.3 * case_random(&seed);
     int dim = 2 + k / 8 % 2, n = 12, outside = k / 4 % 2;
-    contact_case c = body(dim, n, mu, 0.0, &seed);
+    CONTACT_CASE c = body(dim, n, mu, 0.0, &seed);
     for (int i = 0; i < n; ++i) {
       c.g0[i] = k < 32 ? 0.0 : 0.1 * i;
       c.f[i * dim] = 1.0;
@@ -131,10 +125,8 @@ START_TEST(limit_of_friction_is_met_from_both_sides) {
       if (dim == 3) c.f[i * dim + 2] = g * sin(a);
     }
     ck_assert_msg(is_proved(&c) == outside, "%d", k);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* ---- compliances --------------------------------------------------------- */
 
@@ -176,10 +168,10 @@ static contact_case planted(int n, double share, unsigned long long *seed) {
 /* Node 0 slides away under no pressure, but the limit of its friction grows
  * with the pressure at node 1, which moves away by 0.2 only: a force there
  * holds both from a share of 0.2 on. */
-START_TEST(pressure_elsewhere_holds_a_slip) {
+TEST(pressure_elsewhere_holds_a_slip) {
   const double v[] = {-1.0, 1.0, -0.2, 0.0};
   double workspace[3 * 4];
-  contact_case c = case_new(2, 2, 0.3);
+  CONTACT_CASE c = case_new(2, 2, 0.3);
   c.cp.floating = 1;
   c.f[1] = 1.0;
   c.B->col[0] = 1;
@@ -188,15 +180,13 @@ START_TEST(pressure_elsewhere_holds_a_slip) {
     c.B->val[0] = 0.05 * k;
     ck_assert_int_eq(proof_holds(&c.cp, v, workspace), k <= 4);
   }
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(solvable_problem_is_never_said_to_have_no_equilibrium) {
+TEST(solvable_problem_is_never_said_to_have_no_equilibrium) {
   const solver_ops *ops;
   unsigned long long seed = 11;
   for (int k = 0; k < 60; ++k) {
-    contact_case c = planted(2 + k % 12, k % 2 ? 2e-2 : 1e-3, &seed);
+    CONTACT_CASE c = planted(2 + k % 12, k % 2 ? 2e-2 : 1e-3, &seed);
     ck_assert_double_lt(contact_residual(&c.cp, c.u, c.r), 1e-13);
     for (int i = 0; solver_row(i, &ops); ++i) {
       case_cold(&c);
@@ -204,10 +194,8 @@ START_TEST(solvable_problem_is_never_said_to_have_no_equilibrium) {
       ck_assert_msg(rep.outcome != STOPPED_RAY && rep.outcome != STOPPED_NAN,
                     "%s: %d: %s", row_name(ops), k, outcome_text(rep.outcome));
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A rigid body between two walls that are as far apart as it is thick, but for
  * "thick"; it slides along them. */
@@ -225,73 +213,65 @@ static contact_case between_walls(int dim, double thick) {
   return c;
 }
 
-START_TEST(body_too_thick_for_its_gap_has_no_equilibrium) {
+TEST(body_too_thick_for_its_gap_has_no_equilibrium) {
   static const double off[] = {1.0, 1e-3, 1e-6, 0.0, -1e-6, -1e-3};
   const solver_ops *ops;
   for (int k = 0; k < 12; ++k) {
     double thick = off[k % 6];
-    contact_case c = between_walls(2 + k / 6, thick);
+    CONTACT_CASE c = between_walls(2 + k / 6, thick);
     for (int i = 0; solver_row(i, &ops); ++i) {
       case_cold(&c);
       solver_report rep = solve_by(ops, &c, 1e-9, c.u, c.r);
       ck_assert_msg((rep.outcome == STOPPED_RAY) == (thick > 0.0), "%s: %g: %s",
                     row_name(ops), thick, outcome_text(rep.outcome));
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Nor does it matter how far it slides. */
-START_TEST(slip_is_no_part_of_the_proof) {
+TEST(slip_is_no_part_of_the_proof) {
   static const double off[] = {1.0, 1e-3, -1e-3};
   for (int k = 0; k < 12; ++k) {
-    contact_case c = between_walls(2 + k / 6, off[k % 3]);
+    CONTACT_CASE c = between_walls(2 + k / 6, off[k % 3]);
     for (int i = 0; i < c.cp.m; ++i)
       if (i % c.cp.dim > 0) c.f[i] = k / 3 % 2 ? 5.0 : -5.0;
     ck_assert_msg(is_proved(&c) == (off[k % 3] > 0.0), "%d", k);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Forces so large that they lose the penetration in r - c (u - gap). */
-START_TEST(forces_without_bound_do_not_hide_a_body_too_thick) {
+TEST(forces_without_bound_do_not_hide_a_body_too_thick) {
   for (double size = 0x1p10; size <= 0x1p80; size *= 2.0) {
-    contact_case c = between_walls(2, 0x1p-10);
+    CONTACT_CASE c = between_walls(2, 0x1p-10);
     c.r[0] = c.r[2] = -size;
     memcpy(c.u, c.f, 4 * sizeof *c.u);
     c.cp.g0 = NULL;
     ck_assert_msg(contact_residual(&c.cp, c.u, c.r) > 1e-9, "%g", size);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Forces that move their nodes as they push are none, in any unit. */
-START_TEST(forces_that_move_nodes_prove_nothing) {
+TEST(forces_that_move_nodes_prove_nothing) {
   const double force[] = {1, 0, 1, 0};
   for (double unit = 0x1p-200; unit <= 0x1p200; unit *= 0x1p100)
     for (int walls = 0; walls < 2; ++walls) {
       double workspace[12];
-      contact_case c = between_walls(2, 0.5);
+      CONTACT_CASE c = between_walls(2, 0.5);
       if (!walls)
         for (int i = 0; i < 16; ++i) c.A[i] = fmax(c.A[i], 0.0);
       cblas_dscal(16, unit, c.A, 1);
       cblas_dscal(4, unit, c.f, 1);
       ck_assert_int_eq(proof_holds(&c.cp, force, workspace), walls);
-      case_free(&c);
     }
 }
-END_TEST
 
 /* A node that only its friction moves off the wall, u_n = 2 r_t: a limit of 0.5
  * moves it by up to 1. */
-START_TEST(friction_below_its_limit_may_give_way) {
+TEST(friction_below_its_limit_may_give_way) {
   static const double into[] = {0.9, 1.1}, force[] = {1, 0};
   for (int k = 0; k < 2; ++k) {
     double workspace[6];
-    contact_case c = case_new(2, 1, 0.3);
+    CONTACT_CASE c = case_new(2, 1, 0.3);
     c.cp.W = c.A;
     c.cp.A = NULL;
     c.A[2] = 2.0;
@@ -300,16 +280,14 @@ START_TEST(friction_below_its_limit_may_give_way) {
     c.g0[0] = 0.5;
     c.cp.B = NULL;
     ck_assert_int_eq(proof_holds(&c.cp, force, workspace), k);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Nodes that no force moves, all open: no forces. */
-START_TEST(compliance_of_zero_is_solved_without_forces) {
+TEST(compliance_of_zero_is_solved_without_forces) {
   const solver_ops *ops;
   for (int dim = 2; dim <= 3; ++dim) {
-    contact_case c = case_new(dim, 3, 0.3);
+    CONTACT_CASE c = case_new(dim, 3, 0.3);
     for (int i = 0; i < 3; ++i) c.f[i * dim] = -1.0 - i;
     c.cp.W = c.A;
     c.cp.A = NULL;
@@ -323,21 +301,21 @@ START_TEST(compliance_of_zero_is_solved_without_forces) {
       for (int k = 0; k < 3 * dim && rep.outcome > 0; ++k)
         ck_assert_double_eq(c.r[k], 0.0);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A row of equal bodies pressed together, 2 and -1: a search would make a
  * matrix of all normal unknowns. */
-START_TEST(large_sparse_compliance_is_not_searched) {
+TEST(large_sparse_compliance_is_not_searched) {
   enum { N = 3000, M = 2 * N };
-  int *row = calloc(3 * M, sizeof *row), *column = calloc(3 * M, sizeof *row);
-  double *value = calloc(3 * M, sizeof *value), *gap = calloc(N, sizeof *gap);
+  FREED int *row = calloc(3 * M, sizeof *row),
+            *column = calloc(3 * M, sizeof *row);
+  FREED double *value = calloc(3 * M, sizeof *value),
+               *gap = calloc(N, sizeof *gap);
   double *f = calloc(M, sizeof *f), *u = calloc(M, sizeof *u),
          *r = calloc(M, sizeof *r), param[64] = {0.0};
   const solver_ops *sor = solver_find("sor");
-  sparse_blocks *W = NULL;
+  OWNED sparse_blocks *W = NULL;
   contact_solver *s = NULL;
   solver_report rep;
   int n = 0;
@@ -362,26 +340,9 @@ START_TEST(large_sparse_compliance_is_not_searched) {
   ck_assert_msg(st == OK, "%s", status_message());
   ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
   contact_solver_free(&s);
-  memory_free(W);
-  free(row);
-  free(column);
-  free(value);
-  free(gap);
   free(f);
   free(u);
   free(r);
 }
-END_TEST
 
-UNIT_MAIN("proof", balanced_load_has_no_proof,
-          rounding_of_the_load_proves_nothing,
-          limit_of_friction_is_met_from_both_sides,
-          pressure_elsewhere_holds_a_slip,
-          solvable_problem_is_never_said_to_have_no_equilibrium,
-          body_too_thick_for_its_gap_has_no_equilibrium,
-          slip_is_no_part_of_the_proof,
-          forces_without_bound_do_not_hide_a_body_too_thick,
-          forces_that_move_nodes_prove_nothing,
-          friction_below_its_limit_may_give_way,
-          compliance_of_zero_is_solved_without_forces,
-          large_sparse_compliance_is_not_searched)
+UNIT_MAIN("proof")

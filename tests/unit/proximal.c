@@ -7,23 +7,21 @@
 #include "support/unit.h"
 
 #include <malloc.h>
-#include <string.h>
 
 static const double TOL = 1e-8;
 static const double MISSES = 1e-7; /* violation of a claim */
 
 static void must_solve(const solver_ops *ops, const rigid_scene *s) {
-  contact_case c = rigid_case(s);
+  CONTACT_CASE c = rigid_case(s);
   memcpy(c.u, c.f, (size_t)s->m * sizeof *c.u);
   solver_report rep = solve_by(ops, &c, TOL, c.u, c.r);
   ck_assert_msg(rep.outcome == CONVERGED, "%s: %s, residual %g", row_name(ops),
                 outcome_text(rep.outcome), rep.residual);
   ck_assert_double_le(rigid_violation(s, &c), MISSES);
-  case_free(&c);
 }
 
 /* Those that the other links of AUTO do not solve. */
-START_TEST(unsymmetric_compliance_is_solved) {
+TESTS(unsymmetric_compliance_is_solved, 5) {
   static const struct {
     rigid_kind kind;
     int size;
@@ -34,30 +32,26 @@ START_TEST(unsymmetric_compliance_is_solved) {
               {RIGID_WALL, 10, 0.6, 6},
               {RIGID_ARCH, 8, 1.0, 1},
               {RIGID_BOX, 10, 1.5, 4}};
-  rigid_scene s =
+  RIGID_SCENE s =
       rigid_new(hard[_i].kind, 3, hard[_i].size, hard[_i].mu, hard[_i].seed);
   rigid_disturb(&s, 1e-3, hard[_i].seed);
   must_solve(&proximal_solver, &s);
   must_solve(NULL, &s);
-  rigid_free(&s);
 }
-END_TEST
 
-START_TEST(semidefinite_compliance_is_solved) {
+TESTS(semidefinite_compliance_is_solved, RIGID_KINDS) {
   for (int dim = 2; dim <= 3; ++dim)
     for (unsigned long long seed = 1; seed <= 3; ++seed) {
-      rigid_scene s = rigid_new((rigid_kind)_i, dim, 6, 0.5, seed);
+      RIGID_SCENE s = rigid_new((rigid_kind)_i, dim, 6, 0.5, seed);
       must_solve(&proximal_solver, &s);
-      rigid_free(&s);
     }
 }
-END_TEST
 
 /* Nine in ten entries of W are zero: products by rows, factors of UMFPACK, of
  * which nothing stays. */
-START_TEST(sparse_compliance_is_solved) {
+TESTS(sparse_compliance_is_solved, 3) {
   rigid_kind kind = _i == 0 ? RIGID_TOWER : RIGID_HEAP;
-  rigid_scene s = rigid_new(kind, 3, _i == 0 ? 45 : 60, 0.5, 2);
+  RIGID_SCENE s = rigid_new(kind, 3, _i == 0 ? 45 : 60, 0.5, 2);
   int filled = 0;
   for (int k = 0; k < s.m * s.m; ++k) filled += s.W[k] != 0.0;
   ck_assert_int_lt(10 * filled, s.m * s.m);
@@ -71,15 +65,6 @@ START_TEST(sparse_compliance_is_solved) {
   }
   ck_assert_uint_lt(used[3], used[2] + 20000);
   must_solve(NULL, &s);
-  rigid_free(&s);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("proximal");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, unsymmetric_compliance_is_solved, 0, 5);
-  tcase_add_loop_test(tests, semidefinite_compliance_is_solved, 0, RIGID_KINDS);
-  tcase_add_loop_test(tests, sparse_compliance_is_solved, 0, 3);
-  return unit_run("proximal", tests);
-}
+UNIT_MAIN("proximal")

@@ -2,7 +2,6 @@
  * src/output/hdf5/records.c: groups of many records, read with the library:
  * every name once, in order, found, with the data where the offsets say.
  */
-#include "base/base.h"
 #include "output/hdf5/file.h"
 #include "support/folder.h"
 #include "support/unit.h"
@@ -25,7 +24,7 @@ static uint64_t address_of(hid_t file, const char *name) {
  * goes on elsewhere. */
 static record_group make_group(hid_t file, const char *name, int attributes,
                                off_t *offset) {
-  char first[40], text[32];
+  char text[32];
   const hsize_t dims[1] = {VALUES};
   hid_t space = H5Screate_simple(1, dims, NULL),
         plain = H5Pcreate(H5P_DATASET_CREATE);
@@ -44,7 +43,7 @@ static record_group make_group(hid_t file, const char *name, int attributes,
   H5Gclose(group);
   H5Pclose(plain);
   H5Sclose(space);
-  snprintf(first, sizeof first, "%s/00001", name);
+  PRINTED(first, "%s/00001", name);
   return (record_group){address_of(file, name), address_of(file, first),
                         VALUES * sizeof(double), offset};
 }
@@ -130,7 +129,7 @@ static void add_one(int n) {
 
 /* Sizes round those of a node (8), of a root over nodes (256) and over trees
  * (8192), and of names of six digits. */
-START_TEST(records_of_any_number_are_found) {
+TESTS(records_of_any_number_are_found, 12) {
   static const int sizes[] = {2,    8,    9,    255,  256,    257,
                               2100, 8191, 8192, 8193, 100012, 262200};
   const int n = sizes[_i];
@@ -154,10 +153,9 @@ START_TEST(records_of_any_number_are_found) {
   for (int k = 0; k < 2; ++k) free(offset[k]);
   folder_remove(dir);
 }
-END_TEST
 
 /* Groups as later versions of HDF5 make them. */
-START_TEST(another_format_is_told) {
+TEST(another_format_is_told) {
   off_t offset[4] = {0};
   hid_t file = create_file(H5F_LIBVER_LATEST);
   const record_group group = make_group(file, "a", 0, offset);
@@ -166,13 +164,8 @@ START_TEST(another_format_is_told) {
   ck_assert_ptr_nonnull(strstr(status_message(), "version of HDF5"));
   folder_remove(dir);
 }
-END_TEST
 
 int main(void) {
-  TCase *tests = tcase_create("records");
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, records_of_any_number_are_found, 0, 12);
-  tcase_add_test(tests, another_format_is_told);
-  return unit_run("records", tests);
+  return unit_run("records", UNIT_SECONDS);
 }

@@ -1,5 +1,4 @@
 /* src/exchange/reduce.c: global problems whose bodies touch few others. */
-#include "base/base.h"
 #include "base/sparse.h"
 #include "exchange/exchange.h"
 #include "support/contact_case.h"
@@ -12,12 +11,11 @@ static char folder[64], path[128];
 
 static exchange_problem *read_problem(void) {
   exchange_problem *p = NULL;
-  message_log *log = NULL;
+  OWNED message_log *log = NULL;
   const place at = {.file = "a.inp", .line_no = 1};
   ck_assert_int_eq(message_log_new(&log), OK);
   status st = exchange_read(path, EXCHANGE_FCLIB, &at, log, &p);
   ck_assert_msg(st == OK, "%s", status_message());
-  memory_free(log);
   return p;
 }
 
@@ -82,7 +80,7 @@ static void make_row(row_of_bodies *t) {
   for (int b = 0; b < BODIES; ++b) add_body(t, b);
 }
 
-START_TEST(bodies_apart_are_condensed_in_blocks) {
+TEST(bodies_apart_are_condensed_in_blocks) {
   static row_of_bodies t;
   for (int triangle = 0; triangle < 2; ++triangle) {
     double have[M * M];
@@ -109,7 +107,6 @@ START_TEST(bodies_apart_are_condensed_in_blocks) {
     leave(p);
   }
 }
-END_TEST
 
 /* A matrix group with 1 in the diagonal and, where not zero, "below" two rows
  * under it. */
@@ -118,8 +115,9 @@ static void write_band(hid_t file, const char *group, int rows, int columns,
   static const char *const items[] = {"m", "n", "nz", "nzmax"};
   const size_t n = (size_t)columns, all = below != 0.0 ? 2 * n : n;
   const int counts[] = {rows, columns, (int)all, (int)all};
-  int *across = calloc(all, sizeof *across), *down = calloc(all, sizeof *down);
-  double *x = calloc(all, sizeof *x);
+  FREED int *across = calloc(all, sizeof *across),
+            *down = calloc(all, sizeof *down);
+  FREED double *x = calloc(all, sizeof *x);
   char name[60];
   for (size_t k = 0; k < all; ++k) {
     across[k] = (int)(k % n);
@@ -136,16 +134,13 @@ static void write_band(hid_t file, const char *group, int rows, int columns,
   fclib_ints(file, name, (int)all, down);
   snprintf(name, sizeof name, "%s/x", group);
   fclib_reals(file, name, (int)all, x);
-  free(across);
-  free(down);
-  free(x);
 }
 
 /* Unit masses in a row, more contacts than a matrix of all entries may have:
  * blocks 2 and -1. */
-START_TEST(many_bodies_need_no_dense_matrix) {
+TEST(many_bodies_need_no_dense_matrix) {
   enum { MANY = 20000, ALL = 2 * MANY + 2 };
-  double *zero = calloc(ALL, sizeof *zero);
+  FREED double *zero = calloc(ALL, sizeof *zero);
   enter();
   hid_t file = fclib_begin(path);
   fclib_int(file, "/fclib_global/spacedim", 2);
@@ -165,10 +160,7 @@ START_TEST(many_bodies_need_no_dense_matrix) {
         ck_assert_double_eq(b->val[4 * k + e], e % 3 != 0       ? 0.0
                                                : b->row[k] == j ? 2.0
                                                                 : -1.0);
-  free(zero);
   leave(p);
 }
-END_TEST
 
-UNIT_MAIN("reduce", bodies_apart_are_condensed_in_blocks,
-          many_bodies_need_no_dense_matrix)
+UNIT_MAIN("reduce")

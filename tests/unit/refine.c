@@ -4,7 +4,6 @@
  * were, and no worse in shape than half of the smallest angle.
  */
 #include "accuracy/space.h"
-#include "base/base.h"
 #include "support/grid.h"
 #include "support/mesh_file.h"
 #include "support/msh_write.h"
@@ -30,10 +29,9 @@ static mesh *read_again(mesh_file *f, const mesh *m, const double *size) {
 typedef double size_at(const double *x);
 
 static mesh *refine(mesh_file *f, const mesh *m, size_at *wanted) {
-  double *size = calloc((size_t)m->n_node, sizeof *size);
+  FREED double *size = calloc((size_t)m->n_node, sizeof *size);
   for (int i = 0; i < m->n_node; ++i) size[i] = wanted(m->x + m->dim * i);
   mesh *out = read_again(f, m, size);
-  free(size);
   return out;
 }
 
@@ -147,13 +145,14 @@ static double worst_shape(const mesh *m) {
 /* ---- tests ------------------------------------------------------------------
  */
 
-START_TEST(square_is_refined_to_its_sizes) {
-  mesh_file f;
+TEST(square_is_refined_to_its_sizes) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *grid = make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8});
+  OWNED mesh *grid = make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8});
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
-  mesh *m = read_again(&f, grid, NULL), *once = refine(&f, m, near_origin);
-  mesh *twice = refine(&f, once, finer_there);
+  OWNED mesh *m = read_again(&f, grid, NULL),
+             *once = refine(&f, m, near_origin);
+  OWNED mesh *twice = refine(&f, once, finer_there);
   const mesh *all[] = {once, twice};
   for (int k = 0; k < 2; ++k) {
     const mesh *r = all[k];
@@ -182,61 +181,44 @@ START_TEST(square_is_refined_to_its_sizes) {
     ck_assert_double_eq(twice->x[2 * k], m->x[2 * i]);
     ck_assert_double_eq(twice->x[2 * k + 1], m->x[2 * i + 1]);
   }
-  memory_free(twice);
-  memory_free(once);
-  memory_free(m);
-  memory_free(grid);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* The neighbours of elements that are bisected are bisected at their longest
  * edge first, or they would get ever sharper. */
-START_TEST(angles_keep_half_of_the_smallest) {
-  mesh_file f;
+TEST(angles_keep_half_of_the_smallest) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *grid = make_grid_2d((int[]){3, 12}, (double[]){1.0, 0.8});
+  OWNED mesh *grid = make_grid_2d((int[]){3, 12}, (double[]){1.0, 0.8});
   for (int i = 0; i < grid->n_node; ++i)
     grid->x[2 * i] += 0.9 * grid->x[2 * i + 1];
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
-  mesh *m = read_again(&f, grid, NULL), *r = refine(&f, m, finer_there);
-  mesh *more = refine(&f, r, finer_there);
+  OWNED mesh *m = read_again(&f, grid, NULL), *r = refine(&f, m, finer_there);
+  OWNED mesh *more = refine(&f, r, finer_there);
   check_conforming(more);
   ck_assert_double_ge(sharpest(more), 0.5 * sharpest(m) - 1e-12);
-  memory_free(more);
-  memory_free(r);
-  memory_free(m);
-  memory_free(grid);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Nor is a mesh whose elements, of 0.277, are all a little too large kept. */
-START_TEST(nothing_gets_larger) {
-  mesh_file f;
+TEST(nothing_gets_larger) {
+  MESH_FILE f;
   const char *what = NULL;
   mesh_file_open(&f);
-  mesh *grid = make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8});
+  OWNED mesh *grid = make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8});
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
-  mesh *m = read_again(&f, grid, NULL), *same = refine(&f, m, large);
+  OWNED mesh *m = read_again(&f, grid, NULL), *same = refine(&f, m, large);
   ck_assert_msg(mesh_same(m, same, 0.0, &what), "%s", what);
-  mesh *more = refine(&f, m, slightly_finer);
+  OWNED mesh *more = refine(&f, m, slightly_finer);
   ck_assert_int_ge(more->n_elem, 2 * m->n_elem);
-  memory_free(more);
-  memory_free(same);
-  memory_free(m);
-  memory_free(grid);
-  mesh_file_close(&f);
 }
-END_TEST
 
-START_TEST(box_is_refined) {
-  mesh_file f;
+TEST(box_is_refined) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *grid = make_grid_3d((int[]){2, 3, 2}, (double[]){1.0, 1.2, 0.7});
+  OWNED mesh *grid = make_grid_3d((int[]){2, 3, 2}, (double[]){1.0, 1.2, 0.7});
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
-  mesh *m = read_again(&f, grid, NULL), *once = refine(&f, m, near_in_space);
-  mesh *twice = refine(&f, once, finer_in_space);
+  OWNED mesh *m = read_again(&f, grid, NULL),
+             *once = refine(&f, m, near_in_space);
+  OWNED mesh *twice = refine(&f, once, finer_in_space);
   check_conforming(once);
   check_conforming(twice);
   ck_assert_double_eq_tol(measure(twice), 0.84, 1e-13);
@@ -244,53 +226,41 @@ START_TEST(box_is_refined) {
   ck_assert_double_eq_tol(measure_of(twice, "LEFT"), 0.84, 1e-13);
   ck_assert_int_gt(twice->n_elem, 2 * once->n_elem);
   ck_assert_double_ge(worst_shape(twice), 0.2 * worst_shape(m));
-  memory_free(twice);
-  memory_free(once);
-  memory_free(m);
-  memory_free(grid);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* In that unit. */
 static mesh *refine_in(double unit, int dim) {
-  mesh_file f;
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *grid = dim == 2
-                   ? make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8})
-                   : make_grid_3d((int[]){2, 2, 2}, (double[]){1.0, 0.9, 0.7});
+  OWNED mesh *grid =
+      dim == 2 ? make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8})
+               : make_grid_3d((int[]){2, 2, 2}, (double[]){1.0, 0.9, 0.7});
   for (int i = 0; i < dim * grid->n_node; ++i) grid->x[i] *= unit;
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
   mesh *m = read_again(&f, grid, NULL);
-  double *size = calloc((size_t)m->n_node, sizeof *size);
+  FREED double *size = calloc((size_t)m->n_node, sizeof *size);
   space_lengths(m, size);
   for (int i = 0; i < m->n_node; ++i)
     size[i] *= dim == 2 ? 0.125 : m->x[3 * i] < 0.6 * unit ? 0.25 : 1.0;
   mesh *r = read_again(&f, m, size);
-  free(size);
   memory_free(m);
-  memory_free(grid);
-  mesh_file_close(&f);
   return r;
 }
 
 /* Halves of right triangles have equal edges, and elements may be as large as
  * required: rounding, which is another in other units, does not choose. */
-START_TEST(units_change_no_mesh) {
+TEST(units_change_no_mesh) {
   static const double units[] = {1.0 / 3.0, 25.4e-3, 7e5, 1e-9};
   for (int dim = 2; dim <= 3; ++dim) {
-    mesh *first = refine_in(1.0, dim);
+    OWNED mesh *first = refine_in(1.0, dim);
     for (int k = 0; k < 4; ++k) {
-      mesh *m = refine_in(units[k], dim);
+      OWNED mesh *m = refine_in(units[k], dim);
       ck_assert_int_eq(m->n_elem, first->n_elem);
       ck_assert_mem_eq(m->elem, first->elem,
                        (size_t)((dim + 1) * m->n_elem) * sizeof *m->elem);
-      memory_free(m);
     }
-    memory_free(first);
   }
 }
-END_TEST
 
 /* Below x = 1 the bottom of the square becomes an arc of the radius 2 that goes
  * over into a straight line. */
@@ -307,13 +277,13 @@ static void bend(mesh *m) {
 
 /* New nodes are on the arc; what is straight and the corner to the group RIGHT,
  * which may be curved too, stay. */
-START_TEST(surfaces_in_contact_are_followed) {
-  mesh_file f;
+TEST(surfaces_in_contact_are_followed) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *grid = make_grid_2d((int[]){8, 4}, (double[]){2.0, 1.0});
+  OWNED mesh *grid = make_grid_2d((int[]){8, 4}, (double[]){2.0, 1.0});
   bend(grid);
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
-  mesh *m = read_again(&f, grid, NULL), *r = refine(&f, m, fine);
+  OWNED mesh *m = read_again(&f, grid, NULL), *r = refine(&f, m, fine);
   const mesh_group *low = mesh_find_group(r, "BOTTOM");
   const mesh_group *side = mesh_find_group(r, "RIGHT");
   double worst = 0.0;
@@ -331,12 +301,7 @@ START_TEST(surfaces_in_contact_are_followed) {
     ck_assert_double_eq(r->x[2 * side->node_id[k]], 2.0);
   /* The line, not in a group that may be curved, is what it was. */
   ck_assert_double_eq_tol(measure_of(r, "LEFT"), measure_of(m, "LEFT"), 1e-14);
-  memory_free(r);
-  memory_free(m);
-  memory_free(grid);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* The area between the sides of the border. */
 static double enclosed(const mesh *m) {
@@ -352,24 +317,20 @@ static double enclosed(const mesh *m) {
 
 /* Along a hump of the radius 2 lie elements a quarter as high as it is over
  * their sides: new nodes on it would turn them over. */
-START_TEST(thin_elements_are_not_turned_over) {
-  mesh_file f;
+TEST(thin_elements_are_not_turned_over) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *grid = make_grid_2d((int[]){8, 4}, (double[]){2.0, 1.0});
+  OWNED mesh *grid = make_grid_2d((int[]){8, 4}, (double[]){2.0, 1.0});
   for (int i = 0; i < grid->n_node; ++i) {
     double *x = grid->x + 2 * i;
     const double low = sqrt(4.0 - (x[0] - 1.0) * (x[0] - 1.0)) - sqrt(3.0);
     x[1] = low + pow(x[1], 5.0) * (1.0 - low);
   }
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
-  mesh *r = refine(&f, grid, fine);
+  OWNED mesh *r = refine(&f, grid, fine);
   check_conforming(r);
   ck_assert_double_eq_tol(measure(r), enclosed(r), 1e-12);
-  memory_free(r);
-  memory_free(grid);
-  mesh_file_close(&f);
 }
-END_TEST
 
 /* Every other face of a group has its nodes in the other order. */
 static void turn_faces(mesh *m, const char *group) {
@@ -388,11 +349,12 @@ static double height(int twisted, const double *x) {
 
 /* A quarter of a cap of the radius 2 with the planes x = 0 and y = 0, and a
  * saddle, whose normals at the border are those of its curves. */
-START_TEST(curved_surfaces_are_followed) {
+TEST(curved_surfaces_are_followed) {
   for (int twisted = 0; twisted < 2; ++twisted) {
-    mesh_file f;
+    MESH_FILE f;
     mesh_file_open(&f);
-    mesh *grid = make_grid_3d((int[]){4, 4, 2}, (double[]){0.8, 0.8, 0.6});
+    OWNED mesh *grid =
+        make_grid_3d((int[]){4, 4, 2}, (double[]){0.8, 0.8, 0.6});
     for (int i = 0; i < grid->n_node; ++i) {
       double *x = grid->x + 3 * i;
       const double low = height(twisted, x);
@@ -400,7 +362,8 @@ START_TEST(curved_surfaces_are_followed) {
     }
     turn_faces(grid, "FRONT");
     msh_write(mesh_file_path(&f, "grid.msh"), grid);
-    mesh *m = read_again(&f, grid, NULL), *r = refine(&f, m, finer_in_space);
+    OWNED mesh *m = read_again(&f, grid, NULL),
+               *r = refine(&f, m, finer_in_space);
     const mesh_group *low = mesh_find_group(r, "FRONT");
     const mesh_group *plane = mesh_find_group(r, "LEFT");
     double worst = 0.0, chord = 0.2 * 0.2 / 16.0;
@@ -413,50 +376,27 @@ START_TEST(curved_surfaces_are_followed) {
     ck_assert_double_le(worst, (twisted ? 0.3 : 0.01) * chord);
     for (int k = 0; k < plane->n_node; ++k)
       ck_assert_double_eq_tol(r->x[3 * plane->node_id[k]], 0.0, 1e-15);
-    memory_free(r);
-    memory_free(m);
-    memory_free(grid);
-    mesh_file_close(&f);
   }
 }
-END_TEST
 
-START_TEST(each_refused_request_is_an_error_and_frees_all) {
-  mesh_file f;
+TEST(each_refused_request_is_an_error_and_frees_all) {
+  MESH_FILE f;
   mesh_file_open(&f);
-  mesh *grid = make_grid_2d((int[]){2, 2}, (double[]){1.0, 1.0});
+  OWNED mesh *grid = make_grid_2d((int[]){2, 2}, (double[]){1.0, 1.0});
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
-  mesh *m = read_again(&f, grid, NULL);
+  OWNED mesh *m = read_again(&f, grid, NULL);
   double size[9];
   for (int i = 0; i < 9; ++i) size[i] = 0.4;
   const mesh_source source = {.file = mesh_file_path(&f, "grid.msh"),
                               .scale = 1.0,
                               .sizes = {{m, size}}};
-  message_log *log;
+  OWNED message_log *log = NULL;
   const place at = {.file = "job.inp", .line_no = 1, .column_no = 1};
   ck_assert_int_eq(message_log_new(&log), OK);
-  for (long k = 1, refused = 1; refused; ++k) {
-    const size_t before = memory_in_use();
-    const long start = memory_requests();
-    mesh *r;
-    memory_refuse(k, 0);
-    const status st = mesh_read_gmsh(&source, &at, log, &r);
-    refused = k <= memory_requests() - start;
-    memory_refuse(0, 0);
-    ck_assert_int_eq(st, refused ? ERR_MEMORY : OK);
-    ck_assert((r == NULL) == refused);
-    memory_free(r);
-    ck_assert_uint_eq(memory_in_use(), before);
-  }
-  memory_free(log);
-  memory_free(m);
-  memory_free(grid);
-  mesh_file_close(&f);
+  mesh *r;
+  UNIT_REFUSED(0, mesh_read_gmsh(&source, &at, log, &r),
+               ck_assert((r == NULL) == refused);
+               memory_free(r));
 }
-END_TEST
 
-UNIT_MAIN("refine", units_change_no_mesh, square_is_refined_to_its_sizes,
-          angles_keep_half_of_the_smallest, nothing_gets_larger, box_is_refined,
-          surfaces_in_contact_are_followed, thin_elements_are_not_turned_over,
-          curved_surfaces_are_followed,
-          each_refused_request_is_an_error_and_frees_all)
+UNIT_MAIN("refine")

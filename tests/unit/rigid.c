@@ -1,7 +1,6 @@
 /* src/fem/rigid.c and the refinement of condensation.c: bodies with a contrast
  * of moduli. Where contact alone holds them, no force for a rigid motion and
  * the resultants of the loads kept; solutions to rounding everywhere. */
-#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/stack.h"
@@ -108,7 +107,7 @@ static void disc(layers *l, double contrast) {
 }
 
 static void hinged(layers *l, double contrast) {
-  mesh *a = make_grid_2d((int[]){3, 3}, (double[]){1, 1});
+  OWNED mesh *a = make_grid_2d((int[]){3, 3}, (double[]){1, 1});
   mesh *m = grid_join(a, a, (double[]){1, 1});
   const int contact[] = {0, 1, 2, 3, 17, 18, 19}; /* feet of both */
   for (int k = 3 * a->n_elem; k < 3 * m->n_elem; ++k)
@@ -121,7 +120,6 @@ static void hinged(layers *l, double contrast) {
   l->n_motion = 4;
   l->motion = hinged_motion;
   two_moduli(l, contrast, (double[]){1, 1, 1.5});
-  memory_free(a);
 }
 
 /* Two contact nodes close together and far from the origin. */
@@ -240,15 +238,14 @@ static void displace(const layers *l, int mode, double *u) {
 /* Contact components of motion "mode", 0 where held. */
 static void contact_part(const layers *l, int mode, double *v) {
   const contact_surface *s = &l->s->surface;
-  double *u = get((size_t)(s->dim * l->s->m->n_node));
+  FREED double *u = get((size_t)(s->dim * l->s->m->n_node));
   displace(l, mode, u);
   surface_relative(s, u, v);
   for (int i = 0; i < s->dim * s->n; ++i)
     if (s->held[i]) v[i] = 0;
-  free(u);
 }
 
-START_TEST(rigid_motion_needs_no_force) {
+TESTS(rigid_motion_needs_no_force, CASES) {
   layers l = {0};
   stiffness *k;
   condensed *c;
@@ -256,7 +253,7 @@ START_TEST(rigid_motion_needs_no_force) {
   solve(&l, &k, &c);
   const size_t m = (size_t)(l.s->m->dim * l.s->surface.n);
   const double *A = condensed_matrix(c), *kernel;
-  double *v = get(m);
+  FREED double *v = get(m);
   ck_assert_int_eq(condensed_kernel(c, &kernel), l.n_motion);
   for (int mode = 0; mode < l.n_motion; ++mode) {
     double worst = 0, most = 0, arm = 0;
@@ -275,14 +272,12 @@ START_TEST(rigid_motion_needs_no_force) {
     ck_assert_msg(worst <= 1e-15 * arm * most, "motion %d: %g", mode,
                   worst / (arm * most));
   }
-  free(v);
   end(&l, k, c);
 }
-END_TEST
 
 /* Resultants and moments of loads at all nodes, with prescribed displacements
  * that move nothing rigidly. */
-START_TEST(condensed_load_has_the_resultants_of_the_load) {
+TESTS(condensed_load_has_the_resultants_of_the_load, CASES) {
   layers l = {0};
   stiffness *k;
   condensed *c;
@@ -291,7 +286,7 @@ START_TEST(condensed_load_has_the_resultants_of_the_load) {
   const int dim = l.s->m->dim;
   const size_t N = (size_t)(dim * l.s->m->n_node);
   const size_t m = (size_t)(dim * l.s->surface.n);
-  double *F = get(N), *ud = get(N), *u = get(N), *f = get(m), *v = get(m);
+  FREED double *F = get(N), *ud = get(N), *u = get(N), *f = get(m), *v = get(m);
   unsigned seed = 11;
   for (size_t i = 0; i < N; ++i) F[i] = l.s->fixed[i] ? 0 : scene_random(&seed);
   for (size_t i = 0; i < N; ++i) ud[i] = scene_random(&seed);
@@ -312,14 +307,8 @@ START_TEST(condensed_load_has_the_resultants_of_the_load) {
                     "motion %d: %.17g for %.17g", mode, kept, given);
     }
   }
-  free(F);
-  free(ud);
-  free(u);
-  free(f);
-  free(v);
   end(&l, k, c);
 }
-END_TEST
 
 /* Diagonal of A and f for lengths times 2^power, stiffness per length kept. */
 static void scaled(void (*make)(layers *, double), int power, double *out) {
@@ -333,33 +322,29 @@ static void scaled(void (*make)(layers *, double), int power, double *out) {
   const int axisymmetric = l.s->kin[0] == AXISYMMETRIC;
   for (size_t i = 0; i < N; ++i) l.s->m->x[i] = ldexp(l.s->m->x[i], power);
   solve(&l, &k, &c);
-  double *F = get(N);
+  FREED double *F = get(N);
   unsigned seed = 2;
   for (size_t i = 0; i < N; ++i) F[i] = scene_random(&seed);
   ck_assert_int_eq(condense_load(c, F, NULL, out), OK);
   for (size_t i = 0; i < m * m; ++i)
     out[m + i] =
         ldexp(condensed_matrix(c)[i], -power * (axisymmetric + dim - 2));
-  free(F);
   end(&l, k, c);
 }
 
-START_TEST(power_of_two_in_the_lengths_leaves_every_bit) {
+TESTS(power_of_two_in_the_lengths_leaves_every_bit, SCENES) {
   static const int power[] = {40, -13, 1};
   enum { ROOM = 60 * 61 };
-  double *a = get(ROOM), *b = get(ROOM);
+  FREED double *a = get(ROOM), *b = get(ROOM);
   scaled(scenes[_i], 0, a);
   for (int q = 0; q < 3; ++q) {
     scaled(scenes[_i], power[q], b);
     ck_assert(memcmp(a, b, ROOM * sizeof *a) == 0);
   }
-  free(a);
-  free(b);
 }
-END_TEST
 
 /* A motion that a support resists, however little, stays a force. */
-START_TEST(supported_body_keeps_its_stiffness) {
+TEST(supported_body_keeps_its_stiffness) {
   layers l = {0};
   stiffness *k;
   condensed *c;
@@ -368,7 +353,7 @@ START_TEST(supported_body_keeps_its_stiffness) {
   solve(&l, &k, &c);
   const size_t m = (size_t)(2 * l.s->surface.n);
   const double *A = condensed_matrix(c);
-  double *v = get(m);
+  FREED double *v = get(m);
   for (int mode = 0; mode < 3; ++mode) {
     double work = 0, size = 0;
     contact_part(&l, mode, v);
@@ -382,10 +367,8 @@ START_TEST(supported_body_keeps_its_stiffness) {
     else
       ck_assert_double_ge(work, 1e-4 * size);
   }
-  free(v);
   end(&l, k, c);
 }
-END_TEST
 
 /* No lateral contraction: uniform stress has a closed form. */
 static scene *uniaxial(void) {
@@ -405,7 +388,7 @@ static double share(const scene *s, int i) {
 
 /* Unit pressure on a hard layer over a soft one that stands on contact nodes:
  * held at zero they carry it by their shares, u_y = -y below. */
-START_TEST(contrast_costs_no_digits_of_a_floating_column) {
+TESTS(contrast_costs_no_digits_of_a_floating_column, 3) {
   layers l = {.s = uniaxial()};
   stiffness *k;
   condensed *c;
@@ -416,7 +399,8 @@ START_TEST(contrast_costs_no_digits_of_a_floating_column) {
   two_moduli(&l, contrasts[_i], (double[]){0, 1, 0.5});
   solve(&l, &k, &c);
   const int m = 2 * s->surface.n, n = s->m->n_node;
-  double *F = get(2 * (size_t)n), *f = get((size_t)m), *u = get(2 * (size_t)n);
+  FREED double *F = get(2 * (size_t)n), *f = get((size_t)m),
+               *u = get(2 * (size_t)n);
   for (int i = n - 8; i < n; ++i) F[2 * i + 1] = -share(s, i);
   ck_assert_int_eq(condense_load(c, F, NULL, f), OK);
   for (int q = 0; q < m / 2; ++q)
@@ -429,12 +413,8 @@ START_TEST(contrast_costs_no_digits_of_a_floating_column) {
     ck_assert_double_eq_tol(u[2 * i], 0, 1e-13);
     ck_assert_double_eq_tol(u[2 * i + 1], -exact, 1e-13);
   }
-  free(F);
-  free(f);
-  free(u);
   end(&l, k, c);
 }
-END_TEST
 
 /* Condition for a contrast of 1e8; the upper or the lower half is hard. */
 static double condition_of(const char *support, int hard_above,
@@ -455,7 +435,7 @@ static double condition_of(const char *support, int hard_above,
 
 /* A hard part on a soft one costs the digits of the contrast, a soft part on a
  * hard one none. */
-START_TEST(condition_tells_where_contrast_costs_digits) {
+TEST(condition_tells_where_contrast_costs_digits) {
   double digits;
   ck_assert_double_ge(condition_of("BOTTOM", 1, &digits), 1e9);
   ck_assert_double_le(digits, 7);
@@ -464,30 +444,16 @@ START_TEST(condition_tells_where_contrast_costs_digits) {
   ck_assert_double_ge(digits, 12);
   ck_assert_double_le(condition_of("BOTTOM", 0, &digits), 1e4);
 }
-END_TEST
 
-static status whole_way(const scene *s, double *work) {
-  stiffness *k = NULL;
-  condensed *c = NULL;
-  const int N = s->m->dim * s->m->n_node;
-  status st = stiffness_assemble(&s->d, &k);
-  if (st == OK) st = condense(k, &s->d, &c);
-  if (st == OK) st = condense_load(c, work, NULL, work + N);
-  if (st == OK) st = condense_recover(c, work + N, work + 2 * N);
-  condensed_free(c);
-  memory_free(k);
-  return st;
-}
-
-START_TEST(every_refused_request_is_survived) {
+TESTS(every_refused_request_is_survived, SCENES) {
   layers l = {0};
   scenes[_i](&l, 1e8);
-  double *work = get(3 * (size_t)(l.s->m->dim * l.s->m->n_node));
+  FREED double *work = get(3 * (size_t)(l.s->m->dim * l.s->m->n_node));
   const size_t before = memory_in_use();
   for (long r = 1;; ++r) {
     const long seen = memory_requests();
     memory_refuse(r, (int)(r % 2));
-    const status st = whole_way(l.s, work);
+    const status st = scene_whole_way(&l.s->d, work, NULL);
     memory_refuse(0, 0);
     ck_assert_uint_eq(memory_in_use(), before);
     ck_assert_msg(st == OK || st == ERR_MEMORY, "request %ld: %s", r,
@@ -495,23 +461,7 @@ START_TEST(every_refused_request_is_survived) {
     ck_assert_int_lt((int)r, 5000);
     if (memory_requests() - seen < r) break;
   }
-  free(work);
   drop(&l);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("rigid");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, rigid_motion_needs_no_force, 0, CASES);
-  tcase_add_loop_test(tests, condensed_load_has_the_resultants_of_the_load, 0,
-                      CASES);
-  tcase_add_loop_test(tests, power_of_two_in_the_lengths_leaves_every_bit, 0,
-                      SCENES);
-  tcase_add_loop_test(tests, contrast_costs_no_digits_of_a_floating_column, 0,
-                      3);
-  tcase_add_test(tests, condition_tells_where_contrast_costs_digits);
-  tcase_add_loop_test(tests, every_refused_request_is_survived, 0, SCENES);
-  tcase_add_test(tests, supported_body_keeps_its_stiffness);
-  return unit_run("rigid", tests);
-}
+UNIT_MAIN("rigid")

@@ -5,8 +5,6 @@
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
-#include <math.h>
-
 static const double TOL = 1e-8;
 /* Violation that a claim of TOL may have. The angle between slip and force and
  * the slip are counted apart, their product is what the residual holds small.
@@ -16,7 +14,7 @@ static const double FAIR = 1e-5;
 /* 1: solved; a claim must hold. */
 static int solves(const solver_ops *ops, const rigid_scene *s, const char *what,
                   unsigned long long seed) {
-  contact_case c = rigid_case(s);
+  CONTACT_CASE c = rigid_case(s);
   solver_report rep = solve_by(ops, &c, TOL, c.u, c.r);
   int solved = rep.outcome == CONVERGED;
   double bad = solved ? rigid_violation(s, &c) : 0.0;
@@ -25,46 +23,42 @@ static int solves(const solver_ops *ops, const rigid_scene *s, const char *what,
                 row_name(ops), what, s->dim, seed, bad);
   ck_assert_msg(solved || ops != NULL, "%s, %d-D, %d contacts, seed %llu: %s",
                 what, s->dim, s->n, seed, outcome_text(rep.outcome));
-  case_free(&c);
   return solved;
 }
 
-START_TEST(auto_solves_rigid_bodies_at_rest_and_in_motion) {
+TEST(auto_solves_rigid_bodies_at_rest_and_in_motion) {
   static const double mu[] = {0.0, 0.3, 0.8};
   static const int sizes[] = {3, 10, 16};
   for (int k = 0; k < 36 * RIGID_KINDS; ++k) {
     rigid_kind kind = (rigid_kind)(k / 36);
     unsigned long long seed = 1u + (unsigned)(k / 18 % 2);
-    rigid_scene s =
+    RIGID_SCENE s =
         rigid_new(kind, 2 + k % 2, sizes[k / 2 % 3], mu[k / 6 % 3], seed);
     solves(NULL, &s, rigid_name(kind), seed);
-    rigid_free(&s);
   }
 }
-END_TEST
 
-START_TEST(rows_claim_nothing_wrong_on_rigid_bodies) {
+TEST(rows_claim_nothing_wrong_on_rigid_bodies) {
   const solver_ops *ops;
   for (int k = 0; k < 4 * RIGID_KINDS; ++k) {
     rigid_kind kind = (rigid_kind)(k / 4);
-    rigid_scene s = rigid_new(kind, 2 + k % 2, 4, k % 4 < 2 ? 0.3 : 0.7, 11);
+    RIGID_SCENE s = rigid_new(kind, 2 + k % 2, 4, k % 4 < 2 ? 0.3 : 0.7, 11);
     int solved = 0;
     for (int i = 0; solver_row(i, &ops); ++i)
       solved += solves(ops, &s, rigid_name(kind), 11);
     ck_assert_int_ge(solved, 3);
-    rigid_free(&s);
   }
 }
-END_TEST
 
 /* An unsymmetric part of a thousandth of W, of the same rank: W (I + e S W). */
-START_TEST(auto_solves_unsymmetric_rigid_bodies) {
+TEST(auto_solves_unsymmetric_rigid_bodies) {
   for (int k = 0; k < 6 * RIGID_KINDS; ++k) {
     rigid_kind kind = (rigid_kind)(k / 6);
     unsigned long long seed = 31u + (unsigned)k;
-    rigid_scene s = rigid_new(kind, 2 + k % 2, 3, 0.3, seed);
+    RIGID_SCENE s = rigid_new(kind, 2 + k % 2, 3, 0.3, seed);
     size_t m = (size_t)s.m;
-    double *SW = calloc(m * m, sizeof *SW), *more = calloc(m * m, sizeof *more);
+    FREED double *SW = calloc(m * m, sizeof *SW),
+                 *more = calloc(m * m, sizeof *more);
     double size = 0.0, large = 0.0;
     for (size_t i = 0; i < m; ++i)
       for (size_t j = 0; j < i; ++j) {
@@ -82,13 +76,7 @@ START_TEST(auto_solves_unsymmetric_rigid_bodies) {
     }
     for (size_t i = 0; i < m * m; ++i) s.W[i] += 1e-3 * size / large * more[i];
     solves(NULL, &s, rigid_name(kind), 31u + (unsigned)k);
-    free(SW);
-    free(more);
-    rigid_free(&s);
   }
 }
-END_TEST
 
-UNIT_MAIN("rigid_bodies", auto_solves_rigid_bodies_at_rest_and_in_motion,
-          rows_claim_nothing_wrong_on_rigid_bodies,
-          auto_solves_unsymmetric_rigid_bodies)
+UNIT_MAIN("rigid_bodies")

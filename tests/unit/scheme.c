@@ -5,7 +5,6 @@
  * states within a step, and that the state a step starts from stays. E = 1000,
  * nu = 0.3.
  */
-#include "base/base.h"
 #include "support/point_body.h"
 #include "support/unit.h"
 
@@ -40,7 +39,7 @@ static double factor_of(const scheme *s, double z) {
   return sum;
 }
 
-START_TEST(held_stress_has_the_factor_of_its_row) {
+TEST(held_stress_has_the_factor_of_its_row) {
   for (int i = 0; scheme_list[i] != NULL; ++i) {
     const scheme *s = scheme_list[i];
     start("MAXWELL", "2.", &held);
@@ -52,7 +51,6 @@ START_TEST(held_stress_has_the_factor_of_its_row) {
     point_body_free(&b);
   }
 }
-END_TEST
 
 static double energy(const flow_state *s) {
   double sum = 0;
@@ -62,7 +60,7 @@ static double energy(const flow_state *s) {
 
 /* What is lost of a held stress is what its elastic energy falls by, which the
  * quadrature of a row has with its order; halved steps. */
-START_TEST(loss_has_the_order_of_its_row) {
+TEST(loss_has_the_order_of_its_row) {
   for (int i = 0; scheme_list[i] != NULL; ++i) {
     const scheme *s = scheme_list[i];
     double error[2];
@@ -83,11 +81,10 @@ START_TEST(loss_has_the_order_of_its_row) {
                   "%s: %g, then %g", s->name, error[0], error[1]);
   }
 }
-END_TEST
 
 /* At its limit a step leaves the magnitude as it is; there is none for rows
  * that damp everything. */
-START_TEST(limits_are_where_the_factor_is_one) {
+TEST(limits_are_where_the_factor_is_one) {
   for (int i = 0; scheme_list[i] != NULL; ++i) {
     const scheme *s = scheme_list[i];
     const double limit = scheme_limit(s, theta_of(s));
@@ -98,7 +95,6 @@ START_TEST(limits_are_where_the_factor_is_one) {
   }
   ck_assert_double_eq_tol(scheme_limit(scheme_find("THETA"), 0.25), 4, 1e-14);
 }
-END_TEST
 
 /* Stress that grows; strains are no linear function of time. */
 static const point_drive loaded = {.sigma = {1}, .sigma_rate = {1}};
@@ -115,7 +111,7 @@ static double pulled_bar(const scheme *s, int n) {
   return ei;
 }
 
-START_TEST(rows_have_their_order) {
+TEST(rows_have_their_order) {
   for (int i = 0; scheme_list[i] != NULL; ++i) {
     const scheme *s = scheme_list[i];
     const int n = s->order == 1 ? 100 : s->order == 2 ? 40 : 10;
@@ -126,10 +122,9 @@ START_TEST(rows_have_their_order) {
                   order);
   }
 }
-END_TEST
 
 /* The difference of both ends, root of e:e with engineering shears. */
-START_TEST(heun_estimates_by_euler) {
+TEST(heun_estimates_by_euler) {
   double ei[2][6], estimate[1], sum = 0;
   for (int k = 0; k < 2; ++k) {
     const scheme *s = scheme_find(k == 0 ? "EULER" : "HEUN");
@@ -144,9 +139,8 @@ START_TEST(heun_estimates_by_euler) {
   ck_assert_double_gt(sum, 0);
   ck_assert_double_eq_tol(estimate[0], sqrt(sum), 1e-12 * sqrt(sum));
 }
-END_TEST
 
-START_TEST(midpoint_and_backward_are_theta) {
+TEST(midpoint_and_backward_are_theta) {
   static const char *const name[] = {"MIDPOINT", "BACKWARD"};
   static const double theta[] = {0.5, 1};
   static const char *const law[][2] = {{"BURGERS", "8000., 500., 3000."},
@@ -164,11 +158,10 @@ START_TEST(midpoint_and_backward_are_theta) {
     ck_assert_double_ne(ei[0], 0);
   }
 }
-END_TEST
 
 /* Under strains that are linear in time one step is as good as many, for all
  * linear laws. */
-START_TEST(exponential_is_exact_for_linear_laws) {
+TEST(exponential_is_exact_for_linear_laws) {
   const scheme *s = scheme_find("EXPONENTIAL");
   int laws = 0;
   for (int i = 0; law_list[i] != NULL; ++i) {
@@ -187,11 +180,10 @@ START_TEST(exponential_is_exact_for_linear_laws) {
   }
   ck_assert_int_ge(laws, 5);
 }
-END_TEST
 
 /* The equations of any elasticity give what those of an isotropic one do, of
  * the whole stress and of its deviator. */
-START_TEST(steps_of_any_elasticity_are_those_of_an_isotropic_one) {
+TEST(steps_of_any_elasticity_are_those_of_an_isotropic_one) {
   static const char *const law[] = {"MAXWELL", "ZENER", "KELVIN", "BURGERS"};
   static const double theta[] = {0.5, 0.6, 1, 1}; /* the last EXPONENTIAL */
   for (int i = 0; i < 32; ++i) {
@@ -210,14 +202,13 @@ START_TEST(steps_of_any_elasticity_are_those_of_an_isotropic_one) {
                     "%s %d: %g, %g", law[i % 4], i, ei[0][c], ei[1][c]);
   }
 }
-END_TEST
 
 enum { TERMS = 20 };
 static int decade(int k) { return -15 + 30 * k / (TERMS - 1); }
 
 /* Relaxation times from 1e-15 to 1e15 under a held strain: every term keeps its
  * exp(-t/tau), or with n steps of BACKWARD (1 + dt/tau)^-n. */
-START_TEST(thirty_decades_in_one_body) {
+TEST(thirty_decades_in_one_body) {
   char data[1000];
   size_t used = 0;
   for (int k = 0; k < TERMS; ++k)
@@ -240,7 +231,6 @@ START_TEST(thirty_decades_in_one_body) {
     point_body_free(&b);
   }
 }
-END_TEST
 
 /* Stress of a bar that one step of BACKWARD, dt = 0.1, strains by 0.02, where
  * dp = e - stress/E: Q (1 - exp(-b dp)) + C dp/(1 + g dp) + K (dp/dt)^(1/n). */
@@ -259,14 +249,13 @@ static double one_step(double K, double n, double Q, double C) {
 }
 
 /* No threshold, and rates of up to 1E290 at the strain of the end. */
-START_TEST(high_powers_without_a_threshold_are_solved) {
+TEST(high_powers_without_a_threshold_are_solved) {
   static const double n[] = {1, 3, 10, 24, 80}, K[] = {150, 1, 0.5};
   static const point_drive bar = {.held = {1}, .e_rate = {0.2}};
   for (int i = 0; i < 30; ++i) {
     const double Q = i % 2 * 20, C = i % 2 * 2e4;
-    char data[100];
-    snprintf(data, sizeof data, "0., %g, %g, %g, 50.\n%g, 100.", K[i / 2 % 3],
-             n[i / 6], Q, C);
+    PRINTED(data, "0., %g, %g, %g, 50.\n%g, 100.", K[i / 2 % 3], n[i / 6], Q,
+            C);
     const point_input in = {"CHABOCHE", data, 0, 1e5, 0.3, 0};
     const double expected = one_step(K[i / 2 % 3], n[i / 6], Q, C);
     point_body_new(&in, &bar, &b);
@@ -275,11 +264,10 @@ START_TEST(high_powers_without_a_threshold_are_solved) {
     point_body_free(&b);
   }
 }
-END_TEST
 
 /* An attempt that is thrown away: the state it started from is as it was, and
  * the next attempt gives the bytes of a first one. */
-START_TEST(a_rejected_step_leaves_nothing_behind) {
+TEST(a_rejected_step_leaves_nothing_behind) {
   for (int i = 0; scheme_list[i] != NULL; ++i) {
     const scheme *s = scheme_list[i];
     const char *law = s->linear_only ? "ZENER" : "CHABOCHE";
@@ -301,10 +289,9 @@ START_TEST(a_rejected_step_leaves_nothing_behind) {
     ck_assert_mem_eq(ei[0], ei[1], sizeof ei[0]);
   }
 }
-END_TEST
 
 /* Units of laws side by side: places in one list, and the most of any point. */
-START_TEST(points_have_room_for_the_units_of_their_law) {
+TEST(points_have_room_for_the_units_of_their_law) {
   flow_kind kind[] = {{.n_alpha = 4}, {.n_alpha = 7}, {.n_alpha = 1}};
   OWNED char *parts = memory_new(1, 1);
   OWNS(parts);
@@ -314,14 +301,5 @@ START_TEST(points_have_room_for_the_units_of_their_law) {
   for (int k = 0; k <= 4; ++k) ck_assert_uint_eq(x.alpha_at[k], at[k]);
   ck_assert_int_eq(x.most_alpha, 7);
 }
-END_TEST
 
-UNIT_MAIN("scheme", points_have_room_for_the_units_of_their_law,
-          loss_has_the_order_of_its_row, held_stress_has_the_factor_of_its_row,
-          limits_are_where_the_factor_is_one, rows_have_their_order,
-          heun_estimates_by_euler, midpoint_and_backward_are_theta,
-          exponential_is_exact_for_linear_laws,
-          steps_of_any_elasticity_are_those_of_an_isotropic_one,
-          thirty_decades_in_one_body,
-          high_powers_without_a_threshold_are_solved,
-          a_rejected_step_leaves_nothing_behind)
+UNIT_MAIN("scheme")

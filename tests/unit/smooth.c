@@ -2,7 +2,6 @@
  * src/effects/errors/sides.c: normals of the surface that the faces of a mesh
  * stand for.
  */
-#include "base/base.h"
 #include "effects/shared.h"
 #include "support/grid.h"
 #include "support/unit.h"
@@ -19,7 +18,7 @@ typedef struct floor_case {
 } floor_case;
 
 static void check_normal(const floor_case *f) {
-  mesh *m = make_grid_2d((int[]){2, 1}, (double[]){3.0, 3.0});
+  OWNED mesh *m = make_grid_2d((int[]){2, 1}, (double[]){3.0, 3.0});
   unsigned char fixed[2 * NODES];
   run r = {.msh = m};
   smooth_faces rings;
@@ -39,10 +38,9 @@ static void check_normal(const floor_case *f) {
   ck_assert_double_eq_tol(n[0], sin(f->slope), 1e-14);
   ck_assert_double_eq_tol(n[1], -cos(f->slope), 1e-14);
   RELEASE(rings.start, rings.face);
-  memory_free(m);
 }
 
-START_TEST(smooth_normals_are_means_but_at_corners) {
+TEST(smooth_normals_are_means_but_at_corners) {
   const double a = 0.1, b = 0.3;
   /* Of two normals, the second twice as long. */
   const double mean = atan2(sin(a) + 2 * sin(b), cos(a) + 2 * cos(b));
@@ -50,11 +48,10 @@ START_TEST(smooth_normals_are_means_but_at_corners) {
   check_normal(&(floor_case){-0.4, b, {0}, 1, b});
   check_normal(&(floor_case){a, b, {0}, 2, b});
 }
-END_TEST
 
 /* Of planes that hold the end along their normals, unless the surface meets
  * them at an edge. */
-START_TEST(smooth_normals_lie_in_planes_of_symmetry) {
+TEST(smooth_normals_lie_in_planes_of_symmetry) {
   const double b = 0.2;
   check_normal(&(floor_case){b, b, {[2] = X, [5] = X}, 2, 0.0});
   check_normal(&(floor_case){b, 0.3, {[2] = X, [5] = X}, 2, 0.3});
@@ -63,7 +60,5 @@ START_TEST(smooth_normals_lie_in_planes_of_symmetry) {
   /* Neither face is held along its normal. */
   check_normal(&(floor_case){b, b, {[1] = X, [2] = X | Y, [5] = Y}, 2, b});
 }
-END_TEST
 
-UNIT_MAIN("smooth", smooth_normals_are_means_but_at_corners,
-          smooth_normals_lie_in_planes_of_symmetry)
+UNIT_MAIN("smooth")

@@ -3,7 +3,6 @@
  * of statuses.
  */
 #include "accuracy/solutions.h"
-#include "base/base.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
@@ -35,10 +34,10 @@ static int has_state(const solution_set *s, double u_n, double u_t) {
 
 /* Contact frame of the triangle: u_n = -u_y, u_t = u_x. With K u = F: open
  * u = inv(K) F; stick 0; slip u_x = (F_x + mu F_y)/(K_xx + mu K_xy). */
-START_TEST(triangle_has_the_three_solutions) {
+TEST(triangle_has_the_three_solutions) {
   static const double mu[] = {2.0, 3.0};
   for (int k = 0; k < 2; ++k) {
-    contact_case c = case_triangle(0.3, mu[k], 1.9, -1.0);
+    CONTACT_CASE c = case_triangle(0.3, mu[k], 1.9, -1.0);
     double xx = c.A[3], yy = c.A[0], xy = -c.A[1], det = xx * yy - xy * xy;
     solution_set all = all_of(&c), some = {0};
     solver_report rep = {.outcome = CONVERGED, .solver = "newton"};
@@ -55,16 +54,14 @@ START_TEST(triangle_has_the_three_solutions) {
     ck_assert_int_eq(all.n_pattern, 4);
     solution_set_free(&all);
     solution_set_free(&some);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Little friction: one solution, that of the solver, whatever the labels. */
-START_TEST(small_friction_has_one_solution) {
+TEST(small_friction_has_one_solution) {
   int sliding = 0;
   for (int k = 0; k < 60; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2, 1 + k % 6, 0.1, k / 2 % 2, (unsigned long long)(300 + k));
     if (k % 3 == 0) c.cp.B = NULL;
     for (int i = 0; i < c.cp.n; ++i) c.g0[i] = k % 3 == 0 ? 0.2 : 0.0;
@@ -81,18 +78,16 @@ START_TEST(small_friction_has_one_solution) {
     ck_assert_int_eq(all.found[0].facts.n_open, n[CONTACT_OPEN]);
     sliding += n[CONTACT_SLIP];
     solution_set_free(&all);
-    case_free(&c);
   }
   ck_assert_int_gt(sliding, 5);
 }
-END_TEST
 
 /* Each state found holds all conditions; what several solvers find is there;
  * their number is odd, as the degree of the problem is one. */
-START_TEST(enumeration_finds_what_solvers_find) {
+TEST(enumeration_finds_what_solvers_find) {
   int several = 0;
   for (int k = 0; k < 200; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2, 1 + k % 5, 6.0, k / 2 % 2, (unsigned long long)(700 + k));
     solver_report rep = solve(&c);
     solution_set all = all_of(&c), some = {0};
@@ -114,34 +109,28 @@ START_TEST(enumeration_finds_what_solvers_find) {
     }
     solution_set_free(&all);
     solution_set_free(&some);
-    case_free(&c);
   }
   ck_assert_int_gt(several, 5);
 }
-END_TEST
 
-START_TEST(ten_nodes_are_enumerated) {
-  contact_case c = case_any(2, 10, 0.3, 1, 5);
+TEST(ten_nodes_are_enumerated) {
+  CONTACT_CASE c = case_any(2, 10, 0.3, 1, 5);
   solution_set all = all_of(&c);
   ck_assert_int_eq(all.n_pattern, 1l << 20);
   ck_assert_int_ge(all.n_found, 1);
   solution_set_free(&all);
-  case_free(&c);
 }
-END_TEST
 
-START_TEST(larger_problems_are_refused) {
+TEST(larger_problems_are_refused) {
   for (int dim = 2; dim <= 3; ++dim) {
-    contact_case c = case_any(dim, dim == 2 ? 11 : 2, 0.3, 0, 5);
+    CONTACT_CASE c = case_any(dim, dim == 2 ? 11 : 2, 0.3, 0, 5);
     solution_set all = {0};
     ck_assert_int_eq(solutions_by_statuses(&c.cp, 1e-10, c.u, c.r, &all),
                      ERR_DECK);
     ck_assert_ptr_nonnull(strstr(status_message(), "10 contact nodes in 2-D"));
     solution_set_free(&all);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* By solvers: one solution, which is confirmed. */
 static solution_set only_solution(contact_case *c) {
@@ -155,8 +144,8 @@ static solution_set only_solution(contact_case *c) {
 }
 
 /* The answer of one solver is confirmed by another family only. */
-START_TEST(one_family_alone_confirms_nothing) {
-  contact_case c = case_any(2, 4, 0.2, 0, 11);
+TEST(one_family_alone_confirms_nothing) {
+  CONTACT_CASE c = case_any(2, 4, 0.2, 0, 11);
   solution_set some = only_solution(&c);
   for (int k = 0; k < some.n_attempt; ++k)
     if (strcmp(some.attempts[k].family, some.attempts[0].family) != 0)
@@ -164,22 +153,18 @@ START_TEST(one_family_alone_confirms_nothing) {
   ck_assert(!solution_set_confirmed(&some));
   solution_set_free(&some);
   ck_assert(!solution_set_confirmed(&some));
-  case_free(&c);
 }
-END_TEST
 
 /* Without tangents the problem is convex: one solution from every start. */
-START_TEST(normal_unknowns_alone_have_one_solution) {
-  contact_case c = case_any(1, 6, 0.0, 0, 12);
+TEST(normal_unknowns_alone_have_one_solution) {
+  CONTACT_CASE c = case_any(1, 6, 0.0, 0, 12);
   solution_set some = only_solution(&c);
   solution_set_free(&some);
-  case_free(&c);
 }
-END_TEST
 
 /* What a run that did not converge stopped with is no solution. */
-START_TEST(last_iterate_confirms_nothing) {
-  contact_case c = case_any(2, 4, 0.2, 0, 11);
+TEST(last_iterate_confirms_nothing) {
+  CONTACT_CASE c = case_any(2, 4, 0.2, 0, 11);
   solver_report rep = solve(&c);
   solution_set some = {0};
   c.u[0] += 1e-3;
@@ -191,12 +176,10 @@ START_TEST(last_iterate_confirms_nothing) {
   ck_assert_int_eq(some.attempts[0].outcome, STOPPED_STAGNATION);
   ck_assert_int_eq(some.attempts[1].solution_no, 1);
   solution_set_free(&some);
-  case_free(&c);
 }
-END_TEST
 
 /* One solver of each family of the table, supports or none. */
-START_TEST(every_family_is_tried_once) {
+TEST(every_family_is_tried_once) {
   for (int floating = 0; floating < 2; ++floating) {
     case_block_data d = {.columns = 4,
                          .layers = 2,
@@ -204,7 +187,7 @@ START_TEST(every_family_is_tried_once) {
                          .nu = 0.3,
                          .mu = 0.2,
                          .top = {0.01, -0.2}};
-    contact_case c = case_block(&d);
+    CONTACT_CASE c = case_block(&d);
     solver_report rep = solve(&c);
     solution_set some = {0};
     ck_assert_int_eq(solutions_by_solvers(&c.cp, 1e-10, &rep, c.u, c.r, &some),
@@ -222,13 +205,7 @@ START_TEST(every_family_is_tried_once) {
                     ops->name, own, others);
     }
     solution_set_free(&some);
-    case_free(&c);
   }
 }
-END_TEST
 
-UNIT_MAIN("solutions", normal_unknowns_alone_have_one_solution,
-          every_family_is_tried_once, triangle_has_the_three_solutions,
-          one_family_alone_confirms_nothing, last_iterate_confirms_nothing,
-          small_friction_has_one_solution, enumeration_finds_what_solvers_find,
-          ten_nodes_are_enumerated, larger_problems_are_refused)
+UNIT_MAIN("solutions")

@@ -1,13 +1,12 @@
 /* src/solver: every row of the table on the same problems. */
-#include "base/base.h"
 #include "base/archive/archive.h"
 #include "manual/manual.h"
 #include "support/folder.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
-START_TEST(table_is_complete) {
-  char *text = NULL;
+TEST(table_is_complete) {
+  FREED char *text = NULL;
   size_t size;
   FILE *f = open_memstream(&text, &size);
   int i = 0;
@@ -24,9 +23,7 @@ START_TEST(table_is_complete) {
   ck_assert(list_print("solvers", f));
   fclose(f);
   ck_assert_uint_gt(size, 400 * (size_t)(i + 1));
-  free(text);
 }
-END_TEST
 
 /* ---- one triangle: clamped at two corners, the third on the floor -------- */
 
@@ -43,7 +40,7 @@ static int triangle_answer(const solver_ops *ops, contact_case *c, double *ut,
   return rep.outcome == CONVERGED;
 }
 
-START_TEST(one_triangle_slips_sticks_and_opens) {
+TEST(one_triangle_slips_sticks_and_opens) {
   static const struct {
     double fx, fy, ut, N, T;
   } expected[] = {
@@ -54,28 +51,26 @@ START_TEST(one_triangle_slips_sticks_and_opens) {
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i)
     for (int k = 0; k < 4; ++k) {
-      contact_case c = case_triangle(.3, 1.0, expected[k].fx, expected[k].fy);
+      CONTACT_CASE c = case_triangle(.3, 1.0, expected[k].fx, expected[k].fy);
       double ut, N, T;
       ck_assert(triangle_answer(ops, &c, &ut, &N, &T));
       if (!isnan(expected[k].ut))
         ck_assert_double_eq_tol(ut, expected[k].ut, 1e-10);
       ck_assert_double_eq_tol(N, expected[k].N, 1e-10);
       ck_assert_double_eq_tol(T, expected[k].T, 1e-10);
-      case_free(&c);
     }
 }
-END_TEST
 
 /* mu = 2 > mu_crit = 1.8: free, stick and slip are all solutions of
  * F = (1.9, -1). From the neighbourhood of each a solver may find any. */
-START_TEST(one_triangle_has_three_solutions_for_large_friction) {
+TEST(one_triangle_has_three_solutions_for_large_friction) {
   static const double ut[] = {2.2471428571428571, 0, 1.04};
   static const double rt[] = {0, -1.9, -1.0}, rn[] = {0, -1, -.5};
   int found[3] = {0};
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i)
     for (int start = 0; start < 3; ++start) {
-      contact_case c = case_triangle(.3, 2.0, 1.9, -1);
+      CONTACT_CASE c = case_triangle(.3, 2.0, 1.9, -1);
       c.u[1] = ut[start] * 1.01;
       c.u[0] = start == 0 ? -.09 : 0.0;
       c.r[0] = rn[start] * 0.99;
@@ -90,18 +85,16 @@ START_TEST(one_triangle_has_three_solutions_for_large_friction) {
       ck_assert_msg(!answered || which >= 0, "%s: u_t = %g is none of three",
                     row_name(ops), u);
       if (answered) ++found[which];
-      case_free(&c);
     }
   for (int k = 0; k < 3; ++k) ck_assert_int_gt(found[k], 0);
 }
-END_TEST
 
 /* Penetration d taken back by a force with u_t = 0: locked for mu >= .5556. */
-START_TEST(wedged_triangle_is_locked_by_friction) {
+TEST(wedged_triangle_is_locked_by_friction) {
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i)
     for (int locked = 0; locked < 2; ++locked) {
-      contact_case c = case_triangle(.3, locked ? .56 : .55, 0, 0);
+      CONTACT_CASE c = case_triangle(.3, locked ? .56 : .55, 0, 0);
       c.gap[0] = -0.1;
       double ut, N, T;
       ck_assert(triangle_answer(ops, &c, &ut, &N, &T));
@@ -110,17 +103,15 @@ START_TEST(wedged_triangle_is_locked_by_friction) {
       else
         ck_assert_double_eq_tol(fabs(T), .55 * N, 1e-12);
       ck_assert_int_eq(fabs(ut) < 1e-11, locked);
-      case_free(&c);
     }
 }
-END_TEST
 
 /* Its load is taken away: the wedge stays, though no force solves it too. */
-START_TEST(wedge_stays_without_a_load) {
+TEST(wedge_stays_without_a_load) {
   static const double A[] = {1, -0.8, -0.8, 1};
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i) {
-    contact_case c = case_new(2, 1, 2.0);
+    CONTACT_CASE c = case_new(2, 1, 2.0);
     memcpy(c.A, A, sizeof A);
     c.ut0[0] = c.u[1] = c.r[1] = 1;
     c.r[0] = -0.9;
@@ -128,18 +119,16 @@ START_TEST(wedge_stays_without_a_load) {
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_double_eq_tol(c.u[1], 1, 1e-11);
     ck_assert_double_eq_tol(c.r[0], -0.8, 1e-11);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* ---- degenerate problems ------------------------------------------------ */
 
-START_TEST(no_load_costs_nothing) {
+TEST(no_load_costs_nothing) {
   const solver_ops *ops;
   for (int dim = 2; dim <= 3; ++dim)
     for (int i = 0; solver_row(i, &ops); ++i) {
-      contact_case c = case_any(dim, 9, 0.4, 0, 3);
+      CONTACT_CASE c = case_any(dim, 9, 0.4, 0, 3);
       int m = c.cp.m;
       memset(c.f, 0, (size_t)m * sizeof *c.f);
       memset(c.ut0, 0, (size_t)(m - 9) * sizeof *c.ut0);
@@ -150,21 +139,17 @@ START_TEST(no_load_costs_nothing) {
       ck_assert_int_eq(rep.outcome, CONVERGED);
       ck_assert_int_eq(rep.iterations, 0);
       for (int j = 0; j < m; ++j) ck_assert(c.u[j] == 0.0 && c.r[j] == 0.0);
-      case_free(&c);
     }
 }
-END_TEST
 
-START_TEST(no_node_is_solved) {
+TEST(no_node_is_solved) {
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i) {
-    contact_case c = case_new(2, 0, 0.3);
+    CONTACT_CASE c = case_new(2, 0, 0.3);
     solver_report rep = solve_by(ops, &c, 1e-10, c.u, c.r);
     ck_assert_int_eq(rep.outcome, CONVERGED);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Choose the answer (all open or all sticking); the load follows from it. */
 static void choose_answer(contact_case *c, int stick, double *want) {
@@ -189,25 +174,22 @@ static void check_answer(const contact_case *c, int stick, const double *want) {
   }
 }
 
-START_TEST(all_open_and_all_stick_are_exact) {
+TEST(all_open_and_all_stick_are_exact) {
   const solver_ops *ops;
   for (int dim = 2; dim <= 3; ++dim)
     for (int i = 0; solver_row(i, &ops); ++i)
       for (int stick = 0; stick < 2; ++stick) {
-        contact_case c = case_any(dim, 12, stick ? 1e6 : 0.3, 0, 11);
+        CONTACT_CASE c = case_any(dim, 12, stick ? 1e6 : 0.3, 0, 11);
         int m = c.cp.m;
         ck_assert_int_gt(m, 0);
-        double *want = calloc((size_t)m, sizeof *want);
+        FREED double *want = calloc((size_t)m, sizeof *want);
         choose_answer(&c, stick, want);
         memset(c.u, 0, (size_t)m * sizeof *c.u);
         solver_report rep = solve_by(ops, &c, 1e-12, c.u, c.r);
         ck_assert_msg(rep.outcome == CONVERGED, "%s", row_name(ops));
         check_answer(&c, stick, want);
-        free(want);
-        case_free(&c);
       }
 }
-END_TEST
 
 /* Largest defect of A u = f + r, by a plain product. */
 static double equation_defect(const contact_case *c) {
@@ -222,10 +204,10 @@ static double equation_defect(const contact_case *c) {
 
 /* At the floor and at a wall; the wall pushes in one case only. With friction
  * of the others all nodes have been somewhere else. */
-START_TEST(corner_node_meets_both_obstacles) {
+TEST(corner_node_meets_both_obstacles) {
   for (int dim = 2; dim <= 3; ++dim)
     for (int push = 0; push < 3; ++push) {
-      contact_case c = case_any(dim, 5, push == 2 ? 0.3 : 0.0, 0, 21);
+      CONTACT_CASE c = case_any(dim, 5, push == 2 ? 0.3 : 0.0, 0, 21);
       double *side = c.side_gap = calloc((size_t)(5 * (dim - 1)), sizeof *side);
       for (int j = 0; j < 5 * (dim - 1); ++j) side[j] = HUGE_VAL;
       side[2 * (dim - 1)] = 0.05;
@@ -250,14 +232,12 @@ START_TEST(corner_node_meets_both_obstacles) {
         ck_assert_double_le_tol(c.u[0], c.gap[0], 1e-11);
         ck_assert_double_lt(equation_defect(&c), 1e-10);
       }
-      case_free(&c);
     }
 }
-END_TEST
 
-START_TEST(held_tangents_stay_where_they_are_put) {
+TEST(held_tangents_stay_where_they_are_put) {
   for (int dim = 2; dim <= 3; ++dim) {
-    contact_case c = case_any(dim, 8, 0.5, 0, 31);
+    CONTACT_CASE c = case_any(dim, 8, 0.5, 0, 31);
     unsigned char *held = c.held = calloc((size_t)c.cp.m, 1);
     int m = c.cp.m, dof = 3 * dim + 1;
     held[dof] = 1;
@@ -269,50 +249,43 @@ START_TEST(held_tangents_stay_where_they_are_put) {
     all_rows_solve(&c, "held", 1e-9);
     ck_assert_double_eq_tol(c.u[dof], 0.125, 1e-12);
     ck_assert_double_eq_tol(c.r[dof], 0.0, 1e-12);
-    case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(touching_without_force_is_solved) {
-  contact_case c = case_any(2, 10, 0.3, 0, 41);
+TEST(touching_without_force_is_solved) {
+  CONTACT_CASE c = case_any(2, 10, 0.3, 0, 41);
   for (int j = 0; j < 20; ++j) c.u[j] = j % 2 == 0 ? c.gap[j / 2] : 0.05 * j;
   contact_reaction(&c.cp, c.u, c.r);
   for (int j = 0; j < 20; ++j) c.f[j] += c.r[j]; /* A u = f exactly           */
   all_rows_solve(&c, "touching", 1e-9);
-  case_free(&c);
 }
-END_TEST
 
 /* One node: open, sticking, slipping to any side, in a corner of its disc. */
-START_TEST(one_node_is_solved_in_every_state) {
+TEST(one_node_is_solved_in_every_state) {
   for (int k = 0; k < 120; ++k) {
-    contact_case c = case_any(2 + k % 2, 1, 0.25 * (k % 4), k / 8 % 2,
+    CONTACT_CASE c = case_any(2 + k % 2, 1, 0.25 * (k % 4), k / 8 % 2,
                               (unsigned long long)(3000 + k));
     all_rows_solve(&c, "one node", 1e-9);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* All open, all stick, touching without force, one node (kind 0 to 3). */
 static contact_case special_case(int dim, int kind, unsigned long long seed) {
   contact_case c =
       case_any(dim, kind == 3 ? 1 : 7, kind == 1 ? 1e6 : 0.3, 0, seed);
   int m = c.cp.m;
-  double *want = calloc((size_t)m + 1, sizeof *want);
+  FREED double *want = calloc((size_t)m + 1, sizeof *want);
   if (kind < 2) choose_answer(&c, kind, want);
   for (int j = 0; j < m; ++j) want[j] = j % dim ? 0.05 * j : c.gap[j / dim];
   if (kind == 2) contact_product(m, c.A, want, c.f);
-  free(want);
   return c;
 }
 
-START_TEST(special_cases_are_solved_from_the_compliance) {
+TEST(special_cases_are_solved_from_the_compliance) {
   for (int k = 0; k < 32; ++k) {
-    contact_case c = special_case(2 + k % 2, k / 2 % 4, 600u + (unsigned)k);
+    CONTACT_CASE c = special_case(2 + k % 2, k / 2 % 4, 600u + (unsigned)k);
     size_t m = (size_t)c.cp.m;
-    double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q);
+    FREED double *W = calloc(m * m, sizeof *W), *q = calloc(m, sizeof *q);
     ck_assert(case_inverse(c.cp.m, c.A, W));
     contact_product(c.cp.m, W, c.f, q);
     contact_case given = c;
@@ -328,20 +301,16 @@ START_TEST(special_cases_are_solved_from_the_compliance) {
       ck_assert_msg(case_violation(&c, c.u, c.r) < 1e-8, "%s: case %d",
                     row_name(ops), k);
     }
-    free(W);
-    free(q);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* W alone, of half the rank but for 1e-9 or (with u = 0 where it is flat)
  * nothing at all, and a q that it can take back. */
-START_TEST(nearly_singular_compliance_is_solved) {
+TEST(nearly_singular_compliance_is_solved) {
   for (int k = 0; k < 24; ++k) {
     int dim = 2 + k % 2, n = 3 + k % 7, m = dim * n, rank = m / 2;
     unsigned long long seed = 4000 + (unsigned)k;
-    contact_case c = case_new(dim, n, 0.2 * (k % 3));
+    CONTACT_CASE c = case_new(dim, n, 0.2 * (k % 3));
     double G[30 * 15], v[15];
     for (int j = 0; j < rank; ++j) v[j] = case_random(&seed) - 0.5;
     for (int i = 0; i < m * rank; ++i) G[i] = case_random(&seed) - 0.5;
@@ -365,17 +334,15 @@ START_TEST(nearly_singular_compliance_is_solved) {
                     row_name(ops), k, outcome_text(rep.outcome));
       ck_assert(contact_residual(&c.cp, c.u, c.r) <= 1e-8);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Active sets cycle on this P-matrix LCP (w = M z + q): u = -z, gap = 0,
  * w = -r; solution z = (0, 1/2, 5/2). */
-START_TEST(auto_solves_the_cycling_p_matrix) {
+TEST(auto_solves_the_cycling_p_matrix) {
   static const double M[3][3] = {{3, 1, -1}, {2, 1, 1}, {0, -3, 1}};
   static const double q[3] = {2, -3, -1}, z[3] = {0, 0.5, 2.5};
-  contact_case c = case_new(2, 3, 0.0);
+  CONTACT_CASE c = case_new(2, 3, 0.0);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) c.A[2 * i + 6 * (2 * j)] = M[i][j];
     c.A[(2 * i + 1) * 7] = 1.0;
@@ -384,13 +351,11 @@ START_TEST(auto_solves_the_cycling_p_matrix) {
   solver_report rep = solve_by(NULL, &c, 1e-12, c.u, c.r);
   ck_assert_int_eq(rep.outcome, CONVERGED);
   for (int i = 0; i < 3; ++i) ck_assert_double_eq_tol(-c.u[2 * i], z[i], 1e-12);
-  case_free(&c);
 }
-END_TEST
 
 /* A rigid box on four feet: W has rank 6 of 12, forces are not unique. */
-START_TEST(rigid_body_is_solved_in_compliance_form) {
-  contact_case c = case_new(3, 4, 0.5);
+TEST(rigid_body_is_solved_in_compliance_form) {
+  CONTACT_CASE c = case_new(3, 4, 0.5);
   double load[6] = {0.3, 0.1, -1, 0.1, -0.2, 0.05}, force[6] = {0};
   static const double axis[3][3] = {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}};
   double H[12][6];
@@ -416,18 +381,16 @@ START_TEST(rigid_body_is_solved_in_compliance_form) {
     for (int k = 0; k < 6; ++k) force[k] += H[i][k] * c.r[i];
   for (int k = 0; k < 6; ++k) /* it stands still                              */
     ck_assert_double_eq_tol(force[k] + load[k], 0.0, 1e-9);
-  case_free(&c);
 }
-END_TEST
 
 /* ---- precision ---------------------------------------------------------- */
 
-START_TEST(slip_turns_with_the_load_at_any_angle) {
+TEST(slip_turns_with_the_load_at_any_angle) {
   const solver_ops *ops;
   for (int degree = 0; degree < 360; degree += 17)
     for (int i = 0; solver_row(i, &ops); ++i) {
       if (ops != NULL && !(ops->handles & SOLVES_3D)) continue;
-      contact_case c = case_any(3, 6, 0.4, 0, 51);
+      CONTACT_CASE c = case_any(3, 6, 0.4, 0, 51);
       double a = degree * acos(-1.0) / 180.0;
       memset(c.ut0, 0, 12 * sizeof *c.ut0);
       for (int j = 0; j < 6; ++j) {
@@ -451,32 +414,28 @@ START_TEST(slip_turns_with_the_load_at_any_angle) {
                                 1e-9);
       }
       ck_assert_int_gt(slipping, 2);
-      case_free(&c);
     }
 }
-END_TEST
 
-START_TEST(tolerance_1e_12_is_reached) {
+TEST(tolerance_1e_12_is_reached) {
   for (int k = 0; k < 40; ++k) {
-    contact_case c = case_any(2 + k % 2, 10 + k, 0.4, k / 2 % 2,
+    CONTACT_CASE c = case_any(2 + k % 2, 10 + k, 0.4, k / 2 % 2,
                               (unsigned long long)(900 + k));
     solver_report rep = solve_by(NULL, &c, 1e-12, c.u, c.r);
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert(rep.residual <= 1e-12);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Stiffness by 2^a, lengths by 2^b: the same bits. */
-START_TEST(factors_of_two_change_no_bit_of_the_answer) {
+TEST(factors_of_two_change_no_bit_of_the_answer) {
   static const int powers[][2] = {{40, 0}, {-40, 0}, {0, 13}, {7, -21}};
   const solver_ops *ops;
   for (int k = 0; k < 32; ++k)
     for (int i = 0; solver_row(i, &ops); ++i) {
-      contact_case c = case_any(2 + k % 2, 1 + k, k % 3 ? 0.6 : 0.0, k / 2 % 2,
+      CONTACT_CASE c = case_any(2 + k % 2, 1 + k, k % 3 ? 0.6 : 0.0, k / 2 % 2,
                                 (unsigned long long)(300 + k));
-      contact_case d = case_any(2 + k % 2, 1 + k, k % 3 ? 0.6 : 0.0, k / 2 % 2,
+      CONTACT_CASE d = case_any(2 + k % 2, 1 + k, k % 3 ? 0.6 : 0.0, k / 2 % 2,
                                 (unsigned long long)(300 + k));
       int m = c.cp.m, n = c.cp.n, a = powers[k % 4][0], b = powers[k % 4][1];
       for (int j = 0; j < m * m; ++j) d.A[j] = ldexp(c.A[j], a);
@@ -492,23 +451,20 @@ START_TEST(factors_of_two_change_no_bit_of_the_answer) {
                       row_name(ops), k);
         ck_assert(d.r[j] == ldexp(c.r[j], a + b));
       }
-      case_free(&c);
-      case_free(&d);
     }
 }
-END_TEST
 
 /* ---- behaviour ---------------------------------------------------------- */
 
-START_TEST(solved_state_is_kept_and_a_near_one_is_cheap) {
+TEST(solved_state_is_kept_and_a_near_one_is_cheap) {
   for (int k = 0; k < 20; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         case_any(2 + k % 2, 40, 0.4, k / 2 % 2, (unsigned long long)(700 + k));
     solver_choice choice = {.tol = 1e-10};
     contact_solver *s = NULL;
     solver_report rep;
     int m = c.cp.m;
-    double *u = calloc((size_t)m, sizeof *u);
+    FREED double *u = calloc((size_t)m, sizeof *u);
     ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
     ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
     memcpy(u, c.u, (size_t)m * sizeof *u);
@@ -519,20 +475,16 @@ START_TEST(solved_state_is_kept_and_a_near_one_is_cheap) {
     ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_int_le(rep.iterations, 4);
-    free(u);
     contact_solver_free(&s);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* What persists from one solution to the next, through a file. */
 static void pass_on(const solver_ops *ops, void *from, void *to) {
-  char folder[64], path[100], before[100];
   archive *a = NULL;
-  folder_new(folder);
-  snprintf(path, sizeof path, "%s/work", folder);
-  snprintf(before, sizeof before, "%s/before", folder);
+  FOLDER(folder);
+  PRINTED(path, "%s/work", folder);
+  PRINTED(before, "%s/before", folder);
   ck_assert_int_eq(archive_new(&a), OK);
   ck_assert_int_eq(ops->keep(from, a), OK);
   ck_assert_msg(archive_write(a, path, before) == OK, "%s", status_message());
@@ -540,17 +492,16 @@ static void pass_on(const solver_ops *ops, void *from, void *to) {
   ck_assert_int_eq(archive_read(path, &a), OK);
   ck_assert_int_eq(ops->keep(to, a), OK);
   archive_free(&a);
-  folder_remove(folder);
 }
 
 /* Of a solution nothing persists but what is saved. */
-START_TEST(nothing_persists_that_is_not_saved) {
+TEST(nothing_persists_that_is_not_saved) {
   enum { NODES = 24, MOST = 3 * NODES };
   const solver_ops *ops;
   const solver_control control = {.tol = 1e-10};
   for (int k = 0; k < 8; ++k)
     for (int i = 0; solver_row(i, &ops) && ops != NULL; ++i) {
-      contact_case c = case_any(2 + k % 2, NODES, 0.4, k / 2 % 2,
+      CONTACT_CASE c = case_any(2 + k % 2, NODES, 0.4, k / 2 % 2,
                                 (unsigned long long)(900 + k));
       double param[PARAM_SIZE / sizeof(double)] = {0.0}, W[MOST * MOST];
       double f[MOST], u[MOST] = {0}, r[MOST] = {0};
@@ -582,10 +533,8 @@ START_TEST(nothing_persists_that_is_not_saved) {
                     "%s, problem %d: %d iterations, not %d", row_name(ops), k,
                     rep[0].iterations, rep[1].iterations);
       for (int a = 0; a < 2; ++a) memory_free(work[a]);
-      case_free(&c);
     }
 }
-END_TEST
 
 /* Increments under the same load, solved to the same tolerance: friction acts
  * against the slip from the state reached. Random bodies, and a block that
@@ -602,11 +551,11 @@ static contact_case body_under_load(int k) {
   return case_block(&d);
 }
 
-START_TEST(body_at_rest_costs_next_to_nothing) {
+TEST(body_at_rest_costs_next_to_nothing) {
   const solver_ops *ops;
   for (int k = 0; k < 12; ++k)
     for (int i = 0; solver_row(i, &ops); ++i) {
-      contact_case c = body_under_load(k);
+      CONTACT_CASE c = body_under_load(k);
       int dim = c.cp.dim;
       double tol = k % 2 == 0 ? 1e-10 : 1e-6;
       ck_assert_int_eq(solve_by(ops, &c, tol, c.u, c.r).outcome, CONVERGED);
@@ -619,36 +568,30 @@ START_TEST(body_at_rest_costs_next_to_nothing) {
         ck_assert_msg(rep.iterations <= 2, "%s: %d", row_name(ops),
                       rep.iterations);
       }
-      case_free(&c);
     }
 }
-END_TEST
 
-START_TEST(nan_in_the_data_is_told) {
+TEST(nan_in_the_data_is_told) {
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i)
     for (int k = 0; k < 5; ++k) {
-      contact_case c = case_any(2, 5, 0.3, 0, 61);
+      CONTACT_CASE c = case_any(2, 5, 0.3, 0, 61);
       double *where[] = {c.A, c.f, c.gap, c.ut0, c.g0};
       where[k][0] = NAN;
       solver_report rep = solve_by(ops, &c, 1e-10, c.u, c.r);
       ck_assert_int_eq(rep.outcome, STOPPED_NAN);
-      case_free(&c);
     }
 }
-END_TEST
 
-START_TEST(nan_in_the_start_is_forgotten) {
+TEST(nan_in_the_start_is_forgotten) {
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i) {
-    contact_case c = case_any(2, 5, 0.3, 0, 61);
+    CONTACT_CASE c = case_any(2, 5, 0.3, 0, 61);
     c.u[3] = c.r[4] = NAN;
     solver_report rep = solve_by(ops, &c, 1e-10, c.u, c.r);
     ck_assert_int_eq(rep.outcome, CONVERGED);
-    case_free(&c);
   }
 }
-END_TEST
 
 static void count_step(void *ctx, const solver_step *s) {
   int *count = ctx;
@@ -661,7 +604,7 @@ static void keep_step(void *ctx, const solver_step *s) {
   *(solver_step *)ctx = *s;
 }
 
-START_TEST(step_is_heard_as_it_was_told) {
+TEST(step_is_heard_as_it_was_told) {
   solver_step heard = {0};
   const solver_listener listener = {keep_step, &heard};
   const solver_control control = {.listener = &listener};
@@ -671,9 +614,8 @@ START_TEST(step_is_heard_as_it_was_told) {
   ck_assert_double_eq(heard.residual, 0.25);
   ck_assert_int_eq(heard.status_changes, -1);
 }
-END_TEST
 
-START_TEST(best_of_none_leaves_the_start) {
+TEST(best_of_none_leaves_the_start) {
   best_iterate best;
   double u[] = {1.0, 2.0}, r[] = {3.0, 4.0};
   ck_assert_int_eq(best_iterate_new(2, &best), OK);
@@ -687,13 +629,12 @@ START_TEST(best_of_none_leaves_the_start) {
   memory_free(best.u);
   memory_free(best.r);
 }
-END_TEST
 
-START_TEST(limit_of_iterations_is_honest_and_heard) {
+TEST(limit_of_iterations_is_honest_and_heard) {
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i) {
     if (ops == NULL) continue;
-    contact_case c = case_any(2, 50, 0.8, 1, 71);
+    CONTACT_CASE c = case_any(2, 50, 0.8, 1, 71);
     double param[PARAM_SIZE / sizeof(double)] = {0.0};
     int heard = 0;
     solver_listener listener = {count_step, &heard};
@@ -707,17 +648,15 @@ START_TEST(limit_of_iterations_is_honest_and_heard) {
     ck_assert(rep.residual > 1e-13);
     ck_assert_msg(heard > 0, "%s", row_name(ops));
     contact_solver_free(&s);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* Request k refused, for all k: ERR_MEMORY, nothing left behind. */
-START_TEST(refused_memory_is_told_and_given_back) {
+TEST(refused_memory_is_told_and_given_back) {
   const solver_ops *ops;
   for (int form = 0; form < 2; ++form)
     for (int i = 0; solver_row(i, &ops); ++i) {
-      contact_case c = case_any(2, 6, 3.0, 0, 81);
+      CONTACT_CASE c = case_any(2, 6, 3.0, 0, 81);
       if (form == 1) {
         c.cp.W = c.A;
         c.cp.A = NULL;
@@ -744,25 +683,7 @@ START_TEST(refused_memory_is_told_and_given_back) {
         ++refused;
       }
       ck_assert_int_gt(refused, 5);
-      case_free(&c);
     }
 }
-END_TEST
 
-UNIT_MAIN(
-    "solver", table_is_complete, one_triangle_slips_sticks_and_opens,
-    one_triangle_has_three_solutions_for_large_friction,
-    wedged_triangle_is_locked_by_friction, wedge_stays_without_a_load,
-    no_load_costs_nothing, no_node_is_solved, all_open_and_all_stick_are_exact,
-    corner_node_meets_both_obstacles, held_tangents_stay_where_they_are_put,
-    touching_without_force_is_solved, one_node_is_solved_in_every_state,
-    special_cases_are_solved_from_the_compliance,
-    nearly_singular_compliance_is_solved, auto_solves_the_cycling_p_matrix,
-    rigid_body_is_solved_in_compliance_form,
-    slip_turns_with_the_load_at_any_angle, tolerance_1e_12_is_reached,
-    factors_of_two_change_no_bit_of_the_answer,
-    solved_state_is_kept_and_a_near_one_is_cheap,
-    nothing_persists_that_is_not_saved, body_at_rest_costs_next_to_nothing,
-    nan_in_the_data_is_told, nan_in_the_start_is_forgotten,
-    limit_of_iterations_is_honest_and_heard, best_of_none_leaves_the_start,
-    step_is_heard_as_it_was_told, refused_memory_is_told_and_given_back)
+UNIT_MAIN("solver")

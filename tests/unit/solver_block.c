@@ -1,5 +1,4 @@
 /* src/solver: blocks on a floor, sliding, as published, and lying free. */
-#include "base/base.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
@@ -7,7 +6,7 @@
 
 /* 100 nodes (200 in the long run), numbered along the sliding direction,
  * mu = 0.3. */
-START_TEST(plain_block_slides_for_every_row) {
+TEST(plain_block_slides_for_every_row) {
   for (int tall = 0; tall < 2; ++tall) {
     case_block_data d = {.columns = unit_whole() ? 199 : 99,
                          .layers = tall ? 60 : 8,
@@ -15,9 +14,9 @@ START_TEST(plain_block_slides_for_every_row) {
                          .nu = 0.3,
                          .mu = 0.3,
                          .left = {2e-3, 0}};
-    contact_case c = case_block(&d);
+    CONTACT_CASE c = case_block(&d);
     int m = c.cp.m;
-    double *top = calloc((size_t)m, sizeof *top);
+    FREED double *top = calloc((size_t)m, sizeof *top);
     for (int i = 0; i < c.cp.n; ++i) { /* the clamped top moves              */
       top[2 * i] = 1e-3;
       top[2 * i + 1] = 4e-4;
@@ -26,10 +25,10 @@ START_TEST(plain_block_slides_for_every_row) {
       for (int j = 0; j < m; ++j) c.f[i] += c.A[i + m * j] * top[j];
     all_rows_solve(&c, "sliding block", 1e-9);
     /* and in compliance form, where relaxation is known to cycle */
-    double *W = calloc((size_t)m * (size_t)m, sizeof *W);
+    FREED double *W = calloc((size_t)m * (size_t)m, sizeof *W);
     ck_assert(case_inverse(m, c.A, W));
     contact_case w = c;
-    double *q = calloc((size_t)m, sizeof *q);
+    FREED double *q = calloc((size_t)m, sizeof *q);
     contact_product(m, W, c.f, q);
     w.cp.A = NULL;
     w.cp.W = W;
@@ -42,15 +41,10 @@ START_TEST(plain_block_slides_for_every_row) {
                     outcome_text(rep.outcome));
       ck_assert_double_lt(case_violation(&c, c.u, c.r), 1e-7);
     }
-    free(top);
-    free(W);
-    free(q);
-    case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(published_block_is_met) {
+TEST(published_block_is_met) {
   contact_case c = case_published(32, 1.0);
   double um = 40.0 / 32 * 1e3;
   all_rows_solve(&c, "block", 1e-9);
@@ -63,7 +57,6 @@ START_TEST(published_block_is_met) {
   ck_assert_double_eq_tol(um * c.u[1], 40.615, 0.01);
   case_free(&c);
 }
-END_TEST
 
 /* ---- bodies that contact alone holds ------------------------------------ */
 
@@ -77,11 +70,11 @@ static contact_case lying_block(double mu, double push, double shear) {
   return case_block(&d);
 }
 
-START_TEST(lying_block_is_held_by_contact_and_friction) {
+TEST(lying_block_is_held_by_contact_and_friction) {
   static const double shears[] = {0.0, 0.1, 0.29};
   const solver_ops *ops;
   for (int k = 0; k < 3; ++k) {
-    contact_case c = lying_block(0.3, 1.0, shears[k]);
+    CONTACT_CASE c = lying_block(0.3, 1.0, shears[k]);
     for (int i = 0; solver_row(i, &ops); ++i) {
       case_cold(&c);
       solver_report rep = solve_by(ops, &c, 1e-10, c.u, c.r);
@@ -99,19 +92,17 @@ START_TEST(lying_block_is_held_by_contact_and_friction) {
       /* shear at height 16 moves the resultant of the pressure */
       ck_assert_double_eq_tol(M, 16 * P + 16 * shears[k] * P, 1e-8 * P);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(no_equilibrium_is_said_never_numbers) {
+TEST(no_equilibrium_is_said_never_numbers) {
   static const struct {
     double mu, push, shear;
   } hopeless[] = {{0.3, -1, 0}, {0, -1, 0},  {0.3, 1, 0.4},
                   {0, 1, 0.1},  {3, 1, 1.2}, {1, 1, 1.01}};
   const solver_ops *ops;
   for (int k = 0; k < 6; ++k) {
-    contact_case c =
+    CONTACT_CASE c =
         lying_block(hopeless[k].mu, hopeless[k].push, hopeless[k].shear);
     for (int i = 0; solver_row(i, &ops); ++i) {
       case_cold(&c);
@@ -119,13 +110,11 @@ START_TEST(no_equilibrium_is_said_never_numbers) {
       ck_assert_int_lt(rep.outcome, 0);
       if (ops == NULL) ck_assert_int_eq(rep.outcome, STOPPED_RAY);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(motion_that_nothing_fixes_is_smallest) {
-  contact_case c = lying_block(0.0, 1.0, 0.0);
+TEST(motion_that_nothing_fixes_is_smallest) {
+  CONTACT_CASE c = lying_block(0.0, 1.0, 0.0);
   solver_report rep = solve_by(NULL, &c, 1e-10, c.u, c.r);
   ck_assert_int_eq(rep.outcome, CONVERGED);
   double mean = 0.0, largest = 0.0;
@@ -135,11 +124,6 @@ START_TEST(motion_that_nothing_fixes_is_smallest) {
   }
   ck_assert_double_gt(largest, 0.0);
   ck_assert_double_lt(fabs(mean), 1e-3 * largest);
-  case_free(&c);
 }
-END_TEST
 
-UNIT_MAIN("solver_block", plain_block_slides_for_every_row,
-          published_block_is_met, lying_block_is_held_by_contact_and_friction,
-          no_equilibrium_is_said_never_numbers,
-          motion_that_nothing_fixes_is_smallest)
+UNIT_MAIN("solver_block")

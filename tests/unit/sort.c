@@ -1,5 +1,4 @@
 /* src/mesh/sort.c */
-#include "base/memory.h"
 #include "mesh/sort.h"
 #include "support/unit.h"
 
@@ -31,7 +30,7 @@ static int by_second(const void *ctx, int a, int b) {
 }
 
 /* Keys of few or all bits; the C library sorts the same pairs. */
-START_TEST(order_is_that_of_qsort) {
+TEST(order_is_that_of_qsort) {
   static pair p[N], q[N];
   static sort_item item[N];
   uint64_t s = 88172645463325252u;
@@ -50,9 +49,8 @@ START_TEST(order_is_that_of_qsort) {
       }
     }
 }
-END_TEST
 
-START_TEST(equal_keys_stay_in_order_without_compare) {
+TEST(equal_keys_stay_in_order_without_compare) {
   static sort_item a[N];
   uint64_t s = 88172645463325252u;
   for (int i = 0; i < N; ++i) a[i] = (sort_item){(next(&s) & 3) << 40, i};
@@ -61,9 +59,8 @@ START_TEST(equal_keys_stay_in_order_without_compare) {
     ck_assert(a[i - 1].key < a[i].key ||
               (a[i - 1].key == a[i].key && a[i - 1].id < a[i].id));
 }
-END_TEST
 
-START_TEST(refused_memory_is_told_and_given_back) {
+TEST(refused_memory_is_told_and_given_back) {
   static int id[N];
   size_t before = memory_in_use();
   int refusals = 0;
@@ -80,8 +77,5 @@ START_TEST(refused_memory_is_told_and_given_back) {
   ck_assert_int_eq(refusals, 2);
   for (int i = 0; i < N; ++i) ck_assert_int_eq(id[i], i + 1);
 }
-END_TEST
 
-UNIT_MAIN("sort", order_is_that_of_qsort,
-          equal_keys_stay_in_order_without_compare,
-          refused_memory_is_told_and_given_back)
+UNIT_MAIN("sort")

@@ -5,7 +5,6 @@
  * nodes inside moved at random.
  */
 #include "accuracy/space.h"
-#include "base/base.h"
 #include "support/scene.h"
 #include "support/unit.h"
 
@@ -271,13 +270,13 @@ static double effectivity(const problem *p, int n, space_error *found) {
   scene *s = box(p->kin, n, p->layers);
   const mesh *m = s->m;
   const size_t N = (size_t)(m->dim * m->n_node);
-  stiffness *k;
+  OWNED stiffness *k = NULL;
   condensed *c;
-  space_recovery *recovery;
+  OWNED space_recovery *recovery = NULL;
   double *F = calloc(N, sizeof *F), *u = calloc(N, sizeof *u), G[9] = {0};
   double *exact = calloc(N, sizeof *exact), sum = 0;
-  double *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
-  double *eta = calloc((size_t)m->n_elem, sizeof *eta);
+  FREED double *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
+  FREED double *eta = calloc((size_t)m->n_elem, sizeof *eta);
   if (p->layers) {
     make_layers(s, E, C, kin, thickness);
   } else {
@@ -302,19 +301,15 @@ static double effectivity(const problem *p, int n, space_error *found) {
   ck_assert_double_eq_tol(found->norm, sqrt(2 * domain_strain_energy(&s->d, u)),
                           1e-10 * found->norm);
   const double right = sqrt(true_error(p, s, sigma, u));
-  memory_free(recovery);
   condensed_free(c);
-  memory_free(k);
   scene_free(s);
   free(F);
   free(u);
   free(exact);
-  free(sigma);
-  free(eta);
   return found->error / right;
 }
 
-START_TEST(estimate_is_near_the_true_error) {
+TESTS(estimate_is_near_the_true_error, N_PROBLEM) {
   const problem *p = &problems[_i];
   space_error coarse, fine;
   const int n = p->kin == SOLID_3D ? 5 : 10;
@@ -327,28 +322,26 @@ START_TEST(estimate_is_near_the_true_error) {
   ck_assert_double_ge(a, 0.7);
   ck_assert_double_le(a, 1.5);
 }
-END_TEST
 
-START_TEST(uniform_stress_has_no_error) {
+TESTS(uniform_stress_has_no_error, 2) {
   const problem p = {
       "uniform", _i == 0 ? PLANE_STRAIN : PLANE_STRESS, uniform, 0, 0, 0, 0.3};
   space_error found;
   effectivity(&p, 6, &found);
   ck_assert_double_le(found.relative, 1e-12);
 }
-END_TEST
 
 /* A linear stress is recovered at every node of any mesh, closed patch or open:
  * the estimate is the true error of the stress at the centroids. */
-START_TEST(linear_stress_is_recovered) {
+TESTS(linear_stress_is_recovered, 3) {
   const kinematics kin =
       (kinematics[]){PLANE_STRAIN, PLANE_STRESS, SOLID_3D}[_i];
   const problem p = {
       "linear", kin, kin == SOLID_3D ? solid_cubic : plane_cubic, 0, 0, 0, 0.3};
-  scene *s = box(kin, 4, 0);
+  SCENE *s = box(kin, 4, 0);
   const mesh *m = s->m;
-  double *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
-  space_recovery *recovery;
+  FREED double *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
+  OWNED space_recovery *recovery = NULL;
   space_error found;
   for (int e = 0; e < m->n_elem; ++e) {
     double x[3] = {0};
@@ -361,21 +354,17 @@ START_TEST(linear_stress_is_recovered) {
   ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &found), OK);
   ck_assert_double_eq_tol(found.error / sqrt(true_error(&p, s, sigma, NULL)), 1,
                           1e-10);
-  memory_free(recovery);
-  scene_free(s);
-  free(sigma);
 }
-END_TEST
 
 /* Stresses of hoop strains alone, which jump from element to element, of a
  * material with three moduli. */
-START_TEST(hoop_strains_have_no_error) {
+TEST(hoop_strains_have_no_error) {
   static const double length[] = {1, 1};
   static const double E[16] = {8, 1, 2, 0, 1, 7, 3, 0, 2, 3, 6, 0, 0, 0, 0, 1};
   unsigned seed = 7;
-  scene *s = scene_new(make_grid_2d((int[]){4, 4}, length), AXISYMMETRIC, 3);
-  double *sigma = calloc((size_t)(4 * s->m->n_elem), sizeof *sigma);
-  space_recovery *recovery;
+  SCENE *s = scene_new(make_grid_2d((int[]){4, 4}, length), AXISYMMETRIC, 3);
+  FREED double *sigma = calloc((size_t)(4 * s->m->n_elem), sizeof *sigma);
+  OWNED space_recovery *recovery = NULL;
   space_error found;
   s->d.E = E;
   for (int e = 0; e < s->m->n_elem; ++e) {
@@ -386,16 +375,12 @@ START_TEST(hoop_strains_have_no_error) {
   ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &found), OK);
   ck_assert_double_gt(found.norm, 0.1);
   ck_assert_double_le(found.relative, 1e-7);
-  memory_free(recovery);
-  scene_free(s);
-  free(sigma);
 }
-END_TEST
 
-START_TEST(one_layer_of_elements_has_an_estimate) {
+TEST(one_layer_of_elements_has_an_estimate) {
   static const double length[] = {4, 1};
-  scene *s = scene_new(make_grid_2d((int[]){1, 1}, length), PLANE_STRAIN, 3);
-  space_recovery *recovery;
+  SCENE *s = scene_new(make_grid_2d((int[]){1, 1}, length), PLANE_STRAIN, 3);
+  OWNED space_recovery *recovery = NULL;
   space_error found;
   const double sigma[8] = {1, 0, 0.3, 0, 3, 0, 0.9, 0};
   ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
@@ -409,50 +394,42 @@ START_TEST(one_layer_of_elements_has_an_estimate) {
   s->d.E = hot;
   ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &found), OK);
   ck_assert_double_eq_tol(found.error, sqrt(square / 4), 1e-12);
-  memory_free(recovery);
-  scene_free(s);
 }
-END_TEST
 
 /* As many elements as a linear stress has coefficients: their mean, not what
  * they would give exactly. dim + 1 elements of a box of edges 2, 1, ... */
-START_TEST(stresses_that_just_determine_a_fit_are_averaged) {
+TESTS(stresses_that_just_determine_a_fit_are_averaged, 2) {
+  const int dim = 2 + _i;
   static const double length[] = {2, 1, 1};
-  mesh *m = _i == 2 ? make_grid_2d((int[]){2, 1}, length)
-                    : make_grid_3d((int[]){1, 1, 1}, length);
-  scene *s = scene_new(m, _i == 2 ? PLANE_STRAIN : SOLID_3D, 3);
-  space_recovery *recovery;
+  mesh *m = dim == 2 ? make_grid_2d((int[]){2, 1}, length)
+                     : make_grid_3d((int[]){1, 1, 1}, length);
+  SCENE *s = scene_new(m, dim == 2 ? PLANE_STRAIN : SOLID_3D, 3);
+  OWNED space_recovery *recovery = NULL;
   space_error found;
   double sigma[24] = {0}, square = 0;
-  m->n_elem = _i + 1;
+  m->n_elem = dim + 1;
   for (int e = 0; e < m->n_elem; ++e) {
-    const double x = 2 * e - _i, volume = _i == 2 ? 0.5 : 2 / 6.0;
+    const double x = 2 * e - dim, volume = dim == 2 ? 0.5 : 2 / 6.0;
     sigma[s->d.ns * e] = x;
-    if (_i == 2) sigma[s->d.ns * e + 2] = 0.3 * x;
-    square += volume * x * x * (_i == 2 ? 1 - 0.3 * 0.3 : 1) / 3;
+    if (dim == 2) sigma[s->d.ns * e + 2] = 0.3 * x;
+    square += volume * x * x * (dim == 2 ? 1 - 0.3 * 0.3 : 1) / 3;
   }
   ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
   ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &found), OK);
   ck_assert_double_eq_tol(found.error, sqrt(square), 1e-12);
-  memory_free(recovery);
-  scene_free(s);
 }
-END_TEST
 
 /* Where fewer than nine elements are along an edge. */
-START_TEST(few_nodes_inside_are_told) {
+TESTS(few_nodes_inside_are_told, 2) {
   for (int n = 8; n <= 10; n += 2) {
-    scene *s = box(_i == 0 ? PLANE_STRAIN : SOLID_3D, n, 0);
-    space_recovery *recovery;
+    SCENE *s = box(_i == 0 ? PLANE_STRAIN : SOLID_3D, n, 0);
+    OWNED space_recovery *recovery = NULL;
     ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
     for (int again = 0; again < 2; ++again)
       ck_assert_double_eq_tol(space_depth(recovery), n, 1e-12 * n);
     ck_assert_int_eq(space_is_coarse(space_depth(recovery)), n < 9);
-    memory_free(recovery);
-    scene_free(s);
   }
 }
-END_TEST
 
 static int shares_node(const mesh *m, int a, int b) {
   const int v = m->dim + 1;
@@ -464,15 +441,16 @@ static int shares_node(const mesh *m, int a, int b) {
 
 /* Inside a body a node has the stress of the elements that meet there: one
  * element of another stress is an error of those it shares a node with. */
-START_TEST(inner_nodes_see_the_elements_that_meet_there) {
+TESTS(inner_nodes_see_the_elements_that_meet_there, 2) {
+  const int dim = 2 + _i;
   static const double length[] = {1, 1, 1};
-  mesh *m = _i == 3 ? make_grid_3d((int[]){7, 7, 7}, length)
-                    : make_grid_2d((int[]){7, 7}, length);
-  scene *s = scene_new(m, _i == 3 ? SOLID_3D : PLANE_STRAIN, 3);
-  double *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
-  double *eta = calloc((size_t)m->n_elem, sizeof *eta);
+  mesh *m = dim == 3 ? make_grid_3d((int[]){7, 7, 7}, length)
+                     : make_grid_2d((int[]){7, 7}, length);
+  SCENE *s = scene_new(m, dim == 3 ? SOLID_3D : PLANE_STRAIN, 3);
+  FREED double *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
+  FREED double *eta = calloc((size_t)m->n_elem, sizeof *eta);
   const int other = m->n_elem / 2;
-  space_recovery *recovery;
+  OWNED space_recovery *recovery = NULL;
   space_error found;
   sigma[s->d.ns * other] = 1;
   ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
@@ -482,22 +460,17 @@ START_TEST(inner_nodes_see_the_elements_that_meet_there) {
       ck_assert_double_gt(eta[e], 1e-6 * found.error);
     else
       ck_assert_double_le(eta[e], 1e-12 * found.error);
-  memory_free(recovery);
-  scene_free(s);
-  free(sigma);
-  free(eta);
 }
-END_TEST
 
 /* Stresses may jump from body to body: of other elasticity, thickness or kind.
  * Two halves of one stress each have no error then. */
-START_TEST(stress_jumps_between_unlike_sections) {
+TESTS(stress_jumps_between_unlike_sections, 4) {
   static const double length[] = {1, 1};
-  scene *s = scene_new(make_grid_2d((int[]){4, 4}, length), PLANE_STRAIN, 3);
+  SCENE *s = scene_new(make_grid_2d((int[]){4, 4}, length), PLANE_STRAIN, 3);
   double E[32], C[72], thickness[2] = {1, _i == 1 ? 2 : 1};
   kinematics kin[2] = {PLANE_STRAIN, _i == 2 ? PLANE_STRESS : PLANE_STRAIN};
-  double *sigma = calloc((size_t)(4 * s->m->n_elem), sizeof *sigma);
-  space_recovery *recovery;
+  FREED double *sigma = calloc((size_t)(4 * s->m->n_elem), sizeof *sigma);
+  OWNED space_recovery *recovery = NULL;
   space_error found;
   for (int k = 0; k < 2; ++k) {
     memcpy(C + 36 * k, s->C, 36 * sizeof *C);
@@ -520,24 +493,20 @@ START_TEST(stress_jumps_between_unlike_sections) {
     ck_assert_double_gt(found.relative, 0.01);
   else
     ck_assert_double_le(found.relative, 1e-12);
-  memory_free(recovery);
-  free(sigma);
-  scene_free(s);
 }
-END_TEST
 
 /* Sections of one material, one of moduli that another one has, and elements
  * whose moduli follow their temperature are of the region of their material. */
-START_TEST(regions_are_those_of_the_materials) {
+TEST(regions_are_those_of_the_materials) {
   static const int origin[] = {0, 1, 2, 3, 2, 3, 1, 7},
                    wanted[] = {0, 0, 1, 2, 1, 2, 0, 1},
                    factor[] = {1, 1, 2, 1, 7, 8, 9, 2};
   enum { SECTIONS = sizeof origin / sizeof *origin };
-  scene *s =
+  SCENE *s =
       scene_new(make_grid_2d((int[]){4, 4}, (double[]){1, 1}), PLANE_STRAIN, 3);
   double E[16 * SECTIONS], C[36 * SECTIONS], thickness[SECTIONS];
   kinematics kin[SECTIONS];
-  space_recovery *recovery;
+  OWNED space_recovery *recovery = NULL;
   for (int k = 0; k < SECTIONS; ++k) {
     kin[k] = PLANE_STRAIN;
     thickness[k] = origin[k] == 3 ? 2 : 1;
@@ -554,19 +523,16 @@ START_TEST(regions_are_those_of_the_materials) {
   ck_assert_int_eq(space_regions(recovery), 3);
   for (int e = 0; e < s->m->n_elem; ++e)
     ck_assert_int_eq(space_region(recovery, e), wanted[e % SECTIONS]);
-  memory_free(recovery);
-  scene_free(s);
 }
-END_TEST
 
 /* Even errors 4 times the target: an error eta r for each element, r = 1/4,
  * with the edge of a regular triangle of the same area. One element whose error
  * is large: sizes grow from there by no more than 0.4 of the distance. */
-START_TEST(sizes_give_the_target_and_grow_slowly) {
+TEST(sizes_give_the_target_and_grow_slowly) {
   static const double length[] = {1, 1};
-  mesh *m = make_grid_2d((int[]){8, 8}, length);
-  double *eta = calloc((size_t)m->n_elem, sizeof *eta);
-  double *size = calloc((size_t)m->n_node, sizeof *size);
+  OWNED mesh *m = make_grid_2d((int[]){8, 8}, length);
+  FREED double *eta = calloc((size_t)m->n_elem, sizeof *eta);
+  FREED double *size = calloc((size_t)m->n_node, sizeof *size);
   const double edge = sqrt(4 / sqrt(3.0) / 128);
   for (int e = 0; e < m->n_elem; ++e) eta[e] = 0.4 / sqrt(m->n_elem);
   space_sizes(m, eta, 0.1, size);
@@ -586,17 +552,13 @@ START_TEST(sizes_give_the_target_and_grow_slowly) {
     }
   ck_assert_double_gt(most, 1.9 * edge);
   ck_assert_double_lt(least, 0.6 * edge);
-  memory_free(m);
-  free(eta);
-  free(size);
 }
-END_TEST
 
-START_TEST(an_estimate_has_no_unit) {
+TEST(an_estimate_has_no_unit) {
   static const double length[] = {1, 1};
-  scene *s = scene_new(make_grid_2d((int[]){4, 4}, length), PLANE_STRAIN, 3);
+  SCENE *s = scene_new(make_grid_2d((int[]){4, 4}, length), PLANE_STRAIN, 3);
   const size_t T = (size_t)(4 * s->m->n_elem);
-  double *sigma = calloc(T, sizeof *sigma);
+  FREED double *sigma = calloc(T, sizeof *sigma);
   unsigned seed = 5;
   space_recovery *recovery;
   space_error a, b;
@@ -612,27 +574,6 @@ START_TEST(an_estimate_has_no_unit) {
   ck_assert_double_eq(a.relative, b.relative);
   ck_assert_double_gt(a.relative, 0);
   memory_free(recovery);
-  free(sigma);
-  scene_free(s);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("space");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, estimate_is_near_the_true_error, 0, N_PROBLEM);
-  tcase_add_loop_test(tests, uniform_stress_has_no_error, 0, 2);
-  tcase_add_loop_test(tests, inner_nodes_see_the_elements_that_meet_there, 2,
-                      4);
-  tcase_add_loop_test(tests, stress_jumps_between_unlike_sections, 0, 4);
-  tcase_add_test(tests, regions_are_those_of_the_materials);
-  tcase_add_test(tests, sizes_give_the_target_and_grow_slowly);
-  tcase_add_loop_test(tests, linear_stress_is_recovered, 0, 3);
-  tcase_add_test(tests, hoop_strains_have_no_error);
-  tcase_add_test(tests, one_layer_of_elements_has_an_estimate);
-  tcase_add_loop_test(tests, stresses_that_just_determine_a_fit_are_averaged, 2,
-                      4);
-  tcase_add_loop_test(tests, few_nodes_inside_are_told, 0, 2);
-  tcase_add_test(tests, an_estimate_has_no_unit);
-  return unit_run("space", tests);
-}
+UNIT_MAIN("space")

@@ -1,6 +1,5 @@
 /* src/base/matrix/sparse.c: products with blocks against those with all
  * entries. */
-#include "base/base.h"
 #include "base/sparse.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
@@ -24,12 +23,12 @@ static sparse_blocks *make(int dim, unsigned long long seed, double *M) {
   return b;
 }
 
-START_TEST(products_are_those_of_all_entries) {
+TEST(products_are_those_of_all_entries) {
   for (int k = 0; k < 30; ++k) {
     int d = 1 + k % 3, m = d * N;
     unsigned long long seed = 7u + (unsigned)k;
     double M[MOST * MOST], D[MOST * MOST], x[MOST], y[MOST], z[MOST], row[3];
-    sparse_blocks *b = make(d, seed, M);
+    OWNED sparse_blocks *b = make(d, seed, M);
     sparse_blocks_dense(b, D);
     for (int i = 0; i < m * m; ++i) ck_assert(fabs(D[i] - M[i]) <= 1e-15);
     for (int i = 0; i < m; ++i) x[i] = i / d == 2 ? 0.0 : case_random(&seed);
@@ -45,16 +44,14 @@ START_TEST(products_are_those_of_all_entries) {
       ck_assert(fabs(row[i % d] - sum) <= 1e-14);
       ck_assert(sparse_blocks_own(b, i / d)[i % d * (d + 1)] == D[i * (m + 1)]);
     }
-    memory_free(b);
   }
 }
-END_TEST
 
-START_TEST(rows_ascend_and_hold_what_is_not_zero) {
+TEST(rows_ascend_and_hold_what_is_not_zero) {
   for (int k = 0; k < 12; ++k) {
     int d = 1 + k % 3, m = d * N, count = 0;
     double M[MOST * MOST];
-    sparse_blocks *b = make(d, 70u + (unsigned)k, M);
+    OWNED sparse_blocks *b = make(d, 70u + (unsigned)k, M);
     sparse_rows rows = {0};
     ck_assert_int_eq(sparse_blocks_rows(b, &rows), OK);
     ck_assert_int_eq(rows.n, m);
@@ -66,10 +63,7 @@ START_TEST(rows_ascend_and_hold_what_is_not_zero) {
         ck_assert(fabs(rows.val[e] - M[i + m * rows.col[e]]) <= 1e-15);
       }
     sparse_free(&rows);
-    memory_free(b);
   }
 }
-END_TEST
 
-UNIT_MAIN("sparse", products_are_those_of_all_entries,
-          rows_ascend_and_hold_what_is_not_zero)
+UNIT_MAIN("sparse")

@@ -1,5 +1,4 @@
 /* src/fem/element.c: patch tests, forces, energy. */
-#include "base/base.h"
 #include "fem/fem.h"
 #include "run/start/start.h"
 #include "support/scene.h"
@@ -59,16 +58,16 @@ static void linear_strain(kinematics kin, double *e) {
   if (kin == AXISYMMETRIC) e[3] = 0;
 }
 
-START_TEST(patch_of_constant_strain_is_reproduced) {
+TESTS(patch_of_constant_strain_is_reproduced, 4) {
   const kinematics kin = all_kinematics[_i];
-  scene *s = patch(kin);
-  stiffness *k;
+  SCENE *s = patch(kin);
+  OWNED stiffness *k = NULL;
   condensed *c;
   const int dim = s->m->dim, ns = s->d.ns;
   const size_t N = (size_t)(dim * s->m->n_node);
   const size_t T = (size_t)(ns * s->m->n_elem);
-  double *F = calloc(N, sizeof *F), *u = calloc(N, sizeof *u);
-  double *exact = calloc(N, sizeof *exact);
+  FREED double *F = calloc(N, sizeof *F), *u = calloc(N, sizeof *u);
+  FREED double *exact = calloc(N, sizeof *exact);
   double *e = calloc(T, sizeof *e), *t = calloc(T, sizeof *t), strain[6];
   for (int i = 0; i < s->m->n_node; ++i) linear(s->m, kin, i, exact + dim * i);
   ck_assert_int_eq(stiffness_assemble(&s->d, &k), OK);
@@ -106,16 +105,10 @@ START_TEST(patch_of_constant_strain_is_reproduced) {
     if (kin != PLANE_STRESS || row != 2)
       ck_assert_double_eq_tol(e[i], strain[row], 1e-12);
   }
-  free(F);
-  free(u);
-  free(exact);
   free(e);
   free(t);
   condensed_free(c);
-  memory_free(k);
-  scene_free(s);
 }
-END_TEST
 
 static double det(double A[3][3]) {
   double sum = 0;
@@ -132,11 +125,11 @@ static double turned(kinematics kin) {
   return kin == AXISYMMETRIC ? 0 : 0.45;
 }
 
-START_TEST(deformation_is_that_of_the_gradient) {
+TESTS(deformation_is_that_of_the_gradient, 4) {
   const kinematics kin = all_kinematics[_i];
-  scene *s = patch(kin);
+  SCENE *s = patch(kin);
   const int dim = s->m->dim;
-  double *u = calloc((size_t)(dim * s->m->n_node), sizeof *u);
+  FREED double *u = calloc((size_t)(dim * s->m->n_node), sizeof *u);
   for (int sign = -1; sign <= 1; sign += 2) {
     deformation x;
     double A[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, e[6], square = 0;
@@ -157,13 +150,10 @@ START_TEST(deformation_is_that_of_the_gradient) {
     ck_assert_double_eq_tol(x.volume, fmin(1, det(A)), 1e-12);
     ck_assert_double_eq_tol(x.rotation, 2 * turned(kin), 1e-12);
   }
-  free(u);
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(differences_bound_the_gradient) {
-  scene *s = patch(all_kinematics[_i]);
+TESTS(differences_bound_the_gradient, 4) {
+  SCENE *s = patch(all_kinematics[_i]);
   const int m = s->m->dim * s->m->n_node;
   double *u = calloc((size_t)m, sizeof *u), steepest = 0;
   deformation x;
@@ -177,13 +167,11 @@ START_TEST(differences_bound_the_gradient) {
   }
   ck_assert_double_gt(steepest, 0.1);
   free(u);
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(weights_add_up_to_the_volume) {
+TESTS(weights_add_up_to_the_volume, 4) {
   const kinematics kin = all_kinematics[_i];
-  scene *s = patch(kin);
+  SCENE *s = patch(kin);
   double sum = 0;
   s->thickness[0] = kin == PLANE_STRAIN || kin == PLANE_STRESS ? 0.25 : 1;
   for (int e = 0; e < s->m->n_elem; ++e) sum += element_weight(&s->d, e);
@@ -192,16 +180,14 @@ START_TEST(weights_add_up_to_the_volume) {
                         : kin == AXISYMMETRIC ? acos(-1) * (6.25 - 0.25)
                                               : 0.5;
   ck_assert_double_eq_tol(sum, volume, 1e-12 * volume);
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(internal_force_is_stiffness_times_displacement) {
-  scene *s = patch(all_kinematics[_i]);
+TESTS(internal_force_is_stiffness_times_displacement, 4) {
+  SCENE *s = patch(all_kinematics[_i]);
   const int dim = s->m->dim;
   const size_t N = (size_t)(dim * s->m->n_node);
-  double *K = calloc(N * N, sizeof *K), *u = calloc(N, sizeof *u);
-  double *t = calloc((size_t)(s->d.ns * s->m->n_elem), sizeof *t);
+  FREED double *K = calloc(N * N, sizeof *K), *u = calloc(N, sizeof *u);
+  FREED double *t = calloc((size_t)(s->d.ns * s->m->n_elem), sizeof *t);
   double *F = calloc(N, sizeof *F), energy = 0, scale = 0;
   unsigned seed = 11;
   for (size_t i = 0; i < N; ++i) u[i] = scene_random(&seed);
@@ -217,21 +203,16 @@ START_TEST(internal_force_is_stiffness_times_displacement) {
   }
   ck_assert_double_eq_tol(domain_strain_energy(&s->d, u), energy,
                           1e-13 * energy);
-  free(K);
-  free(u);
-  free(t);
   free(F);
-  scene_free(s);
 }
-END_TEST
 
 /* Hand-derived: triangle (1,0) (3,0) (1,2), centroid radius 5/3. */
-START_TEST(strain_matrix_of_one_turned_triangle) {
+TEST(strain_matrix_of_one_turned_triangle) {
   mesh *m = make_grid_2d((int[]){1, 1}, (double[]){1, 1});
   const double x[] = {1, 0, 3, 0, 1, 2, 3, 2};
   memcpy(m->x, x, sizeof x);
   memcpy(m->elem, (int[]){0, 1, 2}, 3 * sizeof(int));
-  scene *s = scene_new(m, AXISYMMETRIC, 1);
+  SCENE *s = scene_new(m, AXISYMMETRIC, 1);
   double B[4 * 6];
   const double h = 1.0 / 5; /* N / r_c */
   const double expected[4][6] = {{-.5, 0, .5, 0, 0, 0},
@@ -243,11 +224,9 @@ START_TEST(strain_matrix_of_one_turned_triangle) {
   for (int r = 0; r < 4; ++r)
     for (int c = 0; c < 6; ++c)
       ck_assert_double_eq_tol(B[r + 4 * c], expected[r][c], 1e-15);
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(element_beyond_the_axis_is_refused_by_number) {
+TEST(element_beyond_the_axis_is_refused_by_number) {
   scene *s = patch(AXISYMMETRIC);
   stiffness *k;
   s->m->x[0] = -0.25;
@@ -261,16 +240,15 @@ START_TEST(element_beyond_the_axis_is_refused_by_number) {
   ck_assert_ptr_nonnull(strstr(status_message(), "element 1"));
   scene_free(s);
 }
-END_TEST
 
 /* The diagonal of the stiffness is the force at an unknown that moves alone. */
-START_TEST(diagonal_is_the_force_of_a_unit_motion) {
-  scene *s = patch(all_kinematics[_i]);
+TESTS(diagonal_is_the_force_of_a_unit_motion, 4) {
+  SCENE *s = patch(all_kinematics[_i]);
   const mesh *m = s->m;
   const size_t n_dof = (size_t)(m->dim * m->n_node);
-  double *u = calloc(n_dof, sizeof *u), *f = calloc(n_dof, sizeof *f),
-         *diagonal = calloc(n_dof, sizeof *diagonal),
-         *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
+  FREED double *u = calloc(n_dof, sizeof *u), *f = calloc(n_dof, sizeof *f),
+               *diagonal = calloc(n_dof, sizeof *diagonal),
+               *sigma = calloc((size_t)(s->d.ns * m->n_elem), sizeof *sigma);
   start_stiffness(&s->d, diagonal);
   for (size_t k = 0; k < n_dof; ++k) {
     u[k] = 1;
@@ -279,25 +257,6 @@ START_TEST(diagonal_is_the_force_of_a_unit_motion) {
     ck_assert_double_eq_tol(diagonal[k] / f[k], 1, 1e-12);
     u[k] = 0;
   }
-  free(u);
-  free(f);
-  free(diagonal);
-  free(sigma);
-  scene_free(s);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("stress");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, patch_of_constant_strain_is_reproduced, 0, 4);
-  tcase_add_loop_test(tests, deformation_is_that_of_the_gradient, 0, 4);
-  tcase_add_loop_test(tests, differences_bound_the_gradient, 0, 4);
-  tcase_add_loop_test(tests, weights_add_up_to_the_volume, 0, 4);
-  tcase_add_loop_test(tests, internal_force_is_stiffness_times_displacement, 0,
-                      4);
-  tcase_add_loop_test(tests, diagonal_is_the_force_of_a_unit_motion, 0, 4);
-  tcase_add_test(tests, strain_matrix_of_one_turned_triangle);
-  tcase_add_test(tests, element_beyond_the_axis_is_refused_by_number);
-  return unit_run("stress", tests);
-}
+UNIT_MAIN("stress")

@@ -6,7 +6,6 @@
  * their order, under given strains, given stresses, and a bar that is pulled
  * and twisted.
  */
-#include "base/base.h"
 #include "support/point_body.h"
 #include "support/unit.h"
 
@@ -331,7 +330,7 @@ static void start_values(const history *h, double *y) {
 /* Distance of e^i and of that of CVODE after n steps. */
 static double error_of(const history *h, const point_drive *d, const scheme *s,
                        double theta, int n, const double *ei) {
-  point_body b;
+  POINT_BODY b;
   double sum = 0, y0[MOST];
   start_values(h, y0);
   point_body_new(&h->in, d, &b);
@@ -342,7 +341,6 @@ static double error_of(const history *h, const point_drive *d, const scheme *s,
     const double found = b.now.ei[i] / (i < 3 ? 1 : 2);
     sum += (i < 3 ? 1 : 2) * pow(found - ei[i], 2);
   }
-  point_body_free(&b);
   return sqrt(sum) / h->scale;
 }
 
@@ -375,7 +373,7 @@ static void check_order(const history *h, const point_drive *d, int row,
 }
 
 /* Without PROTIS_PROBLEMS a law and a scheme meet under one of the controls. */
-START_TEST(every_law_under_every_control) {
+TESTS(every_law_under_every_control, 3 * N_HISTORY) {
   const history *h = &histories[_i / 3];
   const point_drive d = drive_of(h, _i % 3);
   double y0[MOST], y[MOST], ei[6];
@@ -389,6 +387,5 @@ START_TEST(every_law_under_every_control) {
       check_order(h, &d, k, ei);
   }
 }
-END_TEST
 
-UNIT_LOOP("sundials", every_law_under_every_control, 3 * N_HISTORY)
+UNIT_MAIN_FOR("sundials", 10 * UNIT_SECONDS)

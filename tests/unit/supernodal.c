@@ -1,5 +1,4 @@
 /* src/fem/supernodal: factors of which parts are made again. */
-#include "base/base.h"
 #include "fem/supernodal/supernodal.h"
 #include "support/unit.h"
 
@@ -133,7 +132,7 @@ static double left_by_solve(grid *g) {
   return worst;
 }
 
-START_TEST(solves_leave_nothing_of_the_right_side) {
+TEST(solves_leave_nothing_of_the_right_side) {
   grid *g = grid_new();
   int most = 0;
   ck_assert_int_eq(factor_whole(g), -1);
@@ -145,7 +144,6 @@ START_TEST(solves_leave_nothing_of_the_right_side) {
   ck_assert_int_gt(most, 16); /* both ways of elimination */
   grid_free(g);
 }
-END_TEST
 
 static size_t entries_of(const supernodal *s) {
   size_t sum = 0;
@@ -155,7 +153,7 @@ static size_t entries_of(const supernodal *s) {
 
 /* Without the unknowns of some rows of the grid, or of all that a supernode
  * has: the factor of the rest, in less memory. */
-START_TEST(restricted_factors_are_of_the_other_unknowns) {
+TEST(restricted_factors_are_of_the_other_unknowns) {
   grid *g = grid_new();
   supernodal *whole = g->s;
   int number[N], n = 0, emptied = 0;
@@ -180,9 +178,8 @@ START_TEST(restricted_factors_are_of_the_other_unknowns) {
   g->s = whole;
   grid_free(g);
 }
-END_TEST
 
-START_TEST(changes_reach_a_part_and_leave_the_bits_of_a_whole_factor) {
+TEST(changes_reach_a_part_and_leave_the_bits_of_a_whole_factor) {
   grid *g = grid_new(), *h = grid_new();
   double share = 0;
   ck_assert_int_eq(factor_whole(g), -1);
@@ -197,10 +194,9 @@ START_TEST(changes_reach_a_part_and_leave_the_bits_of_a_whole_factor) {
   grid_free(g);
   grid_free(h);
 }
-END_TEST
 
 /* Forces in one place and displacements in another need their parts alone. */
-START_TEST(parts_give_what_the_whole_gives) {
+TEST(parts_give_what_the_whole_gives) {
   grid *g = grid_new();
   supernodal_part from = {0}, to = {0};
   double v[N] = {0}, w[N] = {0};
@@ -227,10 +223,9 @@ START_TEST(parts_give_what_the_whole_gives) {
   free(to.list);
   grid_free(g);
 }
-END_TEST
 
 /* Parts of supernodes: the same factor in less memory, for CHOLMOD too. */
-START_TEST(wide_supernodes_can_be_split) {
+TEST(wide_supernodes_can_be_split) {
   grid *g = grid_new_of(5), *h = grid_new();
   ck_assert_int_gt(g->s->count, h->s->count);
   ck_assert_uint_lt(g->L->xsize, h->L->xsize);
@@ -247,10 +242,9 @@ START_TEST(wide_supernodes_can_be_split) {
   grid_free(g);
   grid_free(h);
 }
-END_TEST
 
 /* The place of the first pivot that is not positive. */
-START_TEST(indefinite_matrices_are_told) {
+TEST(indefinite_matrices_are_told) {
   grid *g = grid_new();
   for (int k = 0; k < 2; ++k) {
     const long p = k == 0 ? 0 : N - 1;
@@ -262,10 +256,5 @@ START_TEST(indefinite_matrices_are_told) {
   ck_assert_int_eq(factor_whole(g), -1);
   grid_free(g);
 }
-END_TEST
 
-UNIT_MAIN("supernodal", solves_leave_nothing_of_the_right_side,
-          restricted_factors_are_of_the_other_unknowns,
-          changes_reach_a_part_and_leave_the_bits_of_a_whole_factor,
-          parts_give_what_the_whole_gives, wide_supernodes_can_be_split,
-          indefinite_matrices_are_told)
+UNIT_MAIN("supernodal")

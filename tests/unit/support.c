@@ -1,5 +1,4 @@
 /* src/fem/support.c, pieces: free motions by name and by what holds them. */
-#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/stack.h"
@@ -16,7 +15,7 @@ typedef struct expected {
 
 /* The motions of the scene are those listed, in this order. */
 static void motions_are(scene *s, const expected *list) {
-  free_motion *found;
+  OWNED free_motion *found = NULL;
   int n, wanted = 0;
   while (list[wanted].text != NULL) ++wanted;
   ck_assert_int_eq(domain_free_motions(&s->d, &n, &found), OK);
@@ -25,7 +24,6 @@ static void motions_are(scene *s, const expected *list) {
     ck_assert_int_eq(found[i].held_by, list[i].held_by);
   }
   ck_assert_int_eq(n, wanted);
-  memory_free(found);
 }
 
 static scene *square(void) {
@@ -38,26 +36,23 @@ static scene *cube(void) {
                    SOLID_3D, 1);
 }
 
-START_TEST(free_square_has_three_motions) {
-  scene *s = square();
+TEST(free_square_has_three_motions) {
+  SCENE *s = square();
   motions_are(s, (expected[]){{NOTHING, "translation along x"},
                               {NOTHING, "translation along y"},
                               {NOTHING, "rotation about (1.5, 1)"},
                               {NOTHING, NULL}});
-  stiffness *k;
+  OWNED stiffness *k = NULL;
   condensed *c;
   ck_assert_int_eq(stiffness_assemble(&s->d, &k), OK);
   ck_assert_int_eq(condense(k, &s->d, &c), ERR_SINGULAR);
   ck_assert_ptr_null(c);
   ck_assert_ptr_nonnull(strstr(status_message(), "body 1"));
   ck_assert_ptr_nonnull(strstr(status_message(), "translation along x"));
-  memory_free(k);
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(pinned_square_turns_about_the_pin) {
-  scene *s = square();
+TEST(pinned_square_turns_about_the_pin) {
+  SCENE *s = square();
   scene_fix_node(s, 3, 0);
   scene_fix_node(s, 3, 1);
   motions_are(
@@ -67,21 +62,17 @@ START_TEST(pinned_square_turns_about_the_pin) {
       s, (expected[]){{NOTHING, "rotation about (3, 0)"}, {NOTHING, NULL}});
   scene_fix_node(s, 0, 1);
   motions_are(s, (expected[]){{NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(square_on_rollers_slides) {
-  scene *s = square();
+TEST(square_on_rollers_slides) {
+  SCENE *s = square();
   scene_fix(s, "TOP", 1);
   motions_are(s,
               (expected[]){{NOTHING, "translation along x"}, {NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(lying_square_is_held_by_contact_and_friction) {
-  scene *s = square();
+TEST(lying_square_is_held_by_contact_and_friction) {
+  SCENE *s = square();
   scene_contact(s, "BOTTOM", (double[]){0, -1}, 0);
   motions_are(s, (expected[]){{FRICTION, "translation along x"},
                               {CONTACT, "translation along y"},
@@ -91,12 +82,10 @@ START_TEST(lying_square_is_held_by_contact_and_friction) {
   s->surface.held[1] = 1; /* its foot is a contact node */
   motions_are(s,
               (expected[]){{CONTACT, "translation along y"}, {NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(one_contact_node_lets_the_body_turn_about_it) {
-  scene *s = square();
+TEST(one_contact_node_lets_the_body_turn_about_it) {
+  SCENE *s = square();
   s->m->group[0].n_node = 1;
   s->m->group[0].node_id[0] = 2;
   scene_contact(s, "BODY", (double[]){0, -1}, 0);
@@ -104,13 +93,11 @@ START_TEST(one_contact_node_lets_the_body_turn_about_it) {
                               {FRICTION, "translation along x"},
                               {CONTACT, "translation along y"},
                               {NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
 /* Normals through one point: only friction resists the turn about it. */
-START_TEST(cap_in_a_socket_turns_by_its_centre) {
-  scene *s = square();
+TEST(cap_in_a_socket_turns_by_its_centre) {
+  SCENE *s = square();
   scene_contact(s, "BOTTOM", (double[]){0, -1}, 0);
   for (int q = 0; q < s->surface.n; ++q) {
     const double *x = s->surface.x + 2 * q, dx = x[0] - 1, dy = x[1] - 5;
@@ -121,24 +108,20 @@ START_TEST(cap_in_a_socket_turns_by_its_centre) {
                               {CONTACT, "translation along x"},
                               {CONTACT, "translation along y"},
                               {NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(second_obstacle_counts_as_contact_not_friction) {
-  scene *s = square();
+TEST(second_obstacle_counts_as_contact_not_friction) {
+  SCENE *s = square();
   scene_contact(s, "BOTTOM", (double[]){0, -1}, 0);
   s->surface.side_id[0] = 1; /* the corner also stands against a wall */
   motions_are(s, (expected[]){{CONTACT, "translation along x"},
                               {CONTACT, "translation along y"},
                               {CONTACT, "rotation about (1.5, 1)"},
                               {NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(turned_body_moves_along_its_axis) {
-  scene *s =
+TEST(turned_body_moves_along_its_axis) {
+  SCENE *s =
       scene_new(make_grid_2d((int[]){3, 2}, (double[]){3, 2}), AXISYMMETRIC, 1);
   motions_are(s,
               (expected[]){{NOTHING, "translation along y"}, {NOTHING, NULL}});
@@ -147,24 +130,20 @@ START_TEST(turned_body_moves_along_its_axis) {
               (expected[]){{NOTHING, "translation along y"}, {NOTHING, NULL}});
   scene_fix_node(s, 5, 1);
   motions_are(s, (expected[]){{NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(cube_on_an_edge_turns_about_it) {
-  scene *s = cube();
+TEST(cube_on_an_edge_turns_about_it) {
+  SCENE *s = cube();
   for (int i = 0; i < 3; ++i)
     for (int c = 0; c < 3; ++c) scene_fix_node(s, i, c);
   motions_are(s, (expected[]){{NOTHING, "rotation about x through (1, 0, 0)"},
                               {NOTHING, NULL}});
   scene_fix_node(s, 26, 1);
   motions_are(s, (expected[]){{NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(lying_cube_has_three_motions_of_friction_and_three_of_contact) {
-  scene *s = cube();
+TEST(lying_cube_has_three_motions_of_friction_and_three_of_contact) {
+  SCENE *s = cube();
   scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
   motions_are(s, (expected[]){{FRICTION, "translation along x"},
                               {FRICTION, "translation along y"},
@@ -173,13 +152,11 @@ START_TEST(lying_cube_has_three_motions_of_friction_and_three_of_contact) {
                               {CONTACT, "rotation about x through (1, 1, 1)"},
                               {CONTACT, "rotation about y through (1, 1, 1)"},
                               {NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
 /* Normals across the velocities of a screw leave just this motion. */
-START_TEST(thread_lets_the_body_screw) {
-  scene *s = cube();
+TEST(thread_lets_the_body_screw) {
+  SCENE *s = cube();
   scene_contact(s, "BODY", (double[]){1, 0, 0}, 0);
   for (int q = 0; q < s->surface.n; ++q) {
     const double *x = s->surface.x + 3 * q;
@@ -189,7 +166,7 @@ START_TEST(thread_lets_the_body_screw) {
                 (double[]){0, v[2] / across, -v[1] / across, 1, 0, 0, 0,
                            v[1] / across, v[2] / across});
   }
-  free_motion *list;
+  OWNED free_motion *list = NULL;
   int n;
   ck_assert_int_eq(domain_free_motions(&s->d, &n, &list), OK);
   ck_assert_int_eq(n, 6);
@@ -199,16 +176,13 @@ START_TEST(thread_lets_the_body_screw) {
         list[i].held_by == HELD_BY_FRICTION &&
         strcmp(list[i].text, "screw motion about z through (1, 1, 1)") == 0;
   ck_assert_int_eq(screws, 1);
-  memory_free(list);
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(units_of_length_change_nothing) {
+TEST(units_of_length_change_nothing) {
   static const double unit[] = {1e-9, 1e9, 25.4};
   for (int q = 0; q < 3; ++q) {
-    scene *s = cube();
-    free_motion *list;
+    SCENE *s = cube();
+    OWNED free_motion *list = NULL;
     int n;
     for (int i = 0; i < 3 * s->m->n_node; ++i) s->m->x[i] *= unit[q];
     scene_fix(s, "LEFT", 0);
@@ -216,16 +190,13 @@ START_TEST(units_of_length_change_nothing) {
     ck_assert_int_eq(domain_free_motions(&s->d, &n, &list), OK);
     ck_assert_int_eq(n, 1);
     ck_assert_str_eq(list[0].text, "translation along z");
-    memory_free(list);
-    scene_free(s);
   }
 }
-END_TEST
 
-START_TEST(second_body_is_named) {
-  mesh *a = make_grid_2d((int[]){2, 2}, (double[]){1, 1});
-  scene *s = scene_new(grid_join(a, a, (double[]){2, 0}), PLANE_STRAIN, 1);
-  free_motion *list;
+TEST(second_body_is_named) {
+  OWNED mesh *a = make_grid_2d((int[]){2, 2}, (double[]){1, 1});
+  SCENE *s = scene_new(grid_join(a, a, (double[]){2, 0}), PLANE_STRAIN, 1);
+  OWNED free_motion *list = NULL;
   int n;
   for (int i = 0; i < 9; ++i) scene_fix_node(s, i, i % 2);
   scene_fix_node(s, 9, 0);
@@ -235,39 +206,31 @@ START_TEST(second_body_is_named) {
   ck_assert_int_eq(list[0].body_id, 1);
   ck_assert_uint_eq(list[0].elem_no, 9);
   ck_assert_str_eq(list[0].text, "rotation about (2, 0)");
-  memory_free(list);
-  memory_free(a);
-  scene_free(s);
 }
-END_TEST
 
 /* Two squares that share one corner: a hinge, one body, two pieces. */
-START_TEST(piece_on_a_hinge_is_found) {
-  mesh *a = make_grid_2d((int[]){2, 2}, (double[]){1, 1});
+TEST(piece_on_a_hinge_is_found) {
+  OWNED mesh *a = make_grid_2d((int[]){2, 2}, (double[]){1, 1});
   mesh *m = grid_join(a, a, (double[]){1, 1});
   for (int k = 3 * a->n_elem; k < 3 * m->n_elem; ++k)
     if (m->elem[k] == 9) m->elem[k] = 8;
-  scene *s = scene_new(m, PLANE_STRAIN, 1);
+  SCENE *s = scene_new(m, PLANE_STRAIN, 1);
   for (int i = 0; i < 3; ++i)
     for (int c = 0; c < 2; ++c) scene_fix_node(s, i, c);
-  free_motion *list;
+  OWNED free_motion *list = NULL;
   int n;
   ck_assert_int_eq(domain_free_motions(&s->d, &n, &list), OK);
   ck_assert_int_eq(n, 1);
   ck_assert_int_eq(list[0].body_id, 0);
   ck_assert_uint_eq(list[0].elem_no, 9);
   ck_assert_str_eq(list[0].text, "rotation about (1, 1)");
-  memory_free(list);
   scene_fix_node(s, 17, 0);
   motions_are(s, (expected[]){{NOTHING, NULL}});
-  memory_free(a);
-  scene_free(s);
 }
-END_TEST
 
 /* Squares joined at corners along a diagonal. */
 static scene *chain(int n) {
-  mesh *one = make_grid_2d((int[]){1, 1}, (double[]){1, 1});
+  OWNED mesh *one = make_grid_2d((int[]){1, 1}, (double[]){1, 1});
   mesh *m = make_grid_2d((int[]){1, 1}, (double[]){1, 1});
   for (int b = 1; b < n; ++b) {
     mesh *more = grid_join(m, one, (double[]){b, b});
@@ -276,18 +239,17 @@ static scene *chain(int n) {
     memory_free(m);
     m = more;
   }
-  memory_free(one);
   return scene_new(m, PLANE_STRAIN, 1);
 }
 
 /* Each piece turns on its own. A pin at the far end takes a turn away where it
  * is in line with all hinges (it resists along the line at most in the second
  * order), else two. */
-START_TEST(chain_of_pieces_turns_at_every_hinge) {
+TESTS(chain_of_pieces_turns_at_every_hinge, 3) {
   enum { PIECES = 20 };
   static const int pin[] = {-1, 4 * PIECES - 1, 4 * PIECES - 2};
-  scene *s = chain(PIECES);
-  free_motion *list;
+  SCENE *s = chain(PIECES);
+  OWNED free_motion *list = NULL;
   int n;
   for (int c = 0; c < 2; ++c) {
     scene_fix_node(s, 0, c);
@@ -300,10 +262,7 @@ START_TEST(chain_of_pieces_turns_at_every_hinge) {
     ck_assert_int_eq(list[i].held_by, HELD_BY_NOTHING);
     ck_assert_int_eq(list[i].body_id, 0);
   }
-  memory_free(list);
-  scene_free(s);
 }
-END_TEST
 
 typedef struct joined {
   motion_hold held_by;
@@ -312,7 +271,7 @@ typedef struct joined {
 } joined;
 
 static void joined_motions_are(const stack *k, const joined *list) {
-  free_motion *found;
+  OWNED free_motion *found = NULL;
   int n, wanted = 0;
   while (list[wanted].text != NULL) ++wanted;
   ck_assert_int_eq(domain_free_motions(&k->s->d, &n, &found), OK);
@@ -323,13 +282,12 @@ static void joined_motions_are(const stack *k, const joined *list) {
     ck_assert_int_eq(found[i].body_id, list[i].body_id);
   }
   ck_assert_int_eq(n, wanted);
-  memory_free(found);
 }
 
 /* Sides that match and others; either side is the slave. */
 static const int sides[][3] = {{3, 3, 3}, {2, 3, 4}, {5, 2, 3}};
 
-START_TEST(pair_with_a_supported_body_holds_like_an_obstacle) {
+TESTS(pair_with_a_supported_body_holds_like_an_obstacle, 6) {
   static const char *const joints[] = {"-P", "-M"};
   stack *k = stack_new(joints[_i % 2], sides[_i / 2], 0);
   stack_fix(k, 0);
@@ -340,14 +298,13 @@ START_TEST(pair_with_a_supported_body_holds_like_an_obstacle) {
                                    {NOTHING, 0, 0, NULL}});
   stack_free(k);
 }
-END_TEST
 
 /* Nothing resists what both do together, whatever the gap between them. */
-START_TEST(pair_of_free_bodies_moves_as_one) {
+TESTS(pair_of_free_bodies_moves_as_one, 6) {
   static const char *const joints[] = {"-P", "-M"};
   for (int gap = 0; gap < 2; ++gap) {
     stack *k = stack_new(joints[_i % 2], sides[_i / 2], gap / 64.0);
-    free_motion *list;
+    OWNED free_motion *list = NULL;
     int n, of[HELD_BY_CONTACT + 1] = {0};
     ck_assert_int_eq(domain_free_motions(&k->s->d, &n, &list), OK);
     ck_assert_int_eq(n, 6);
@@ -363,17 +320,15 @@ START_TEST(pair_of_free_bodies_moves_as_one) {
     /* about the centre of the first, so that the second moves more */
     ck_assert_str_eq(list[2].text, "rotation about (0.5, 0.5)");
     ck_assert_int_eq(list[2].body_id, 1);
-    memory_free(list);
     stack_free(k);
   }
 }
-END_TEST
 
 /* Two cubes whose nodes match, the lower one held. */
-START_TEST(cube_on_a_cube_is_held_like_on_the_ground) {
+TEST(cube_on_a_cube_is_held_like_on_the_ground) {
   enum { N = 9 };
-  mesh *a = make_grid_3d((int[]){2, 2, 2}, (double[]){2, 2, 2});
-  scene *s = scene_new(grid_join(a, a, (double[]){0, 0, 2}), SOLID_3D, 1);
+  OWNED mesh *a = make_grid_3d((int[]){2, 2, 2}, (double[]){2, 2, 2});
+  SCENE *s = scene_new(grid_join(a, a, (double[]){0, 0, 2}), SOLID_3D, 1);
   size_t start[N + 1];
   int master[N];
   double part[3 * N];
@@ -396,15 +351,12 @@ START_TEST(cube_on_a_cube_is_held_like_on_the_ground) {
                               {CONTACT, "rotation about x through (1, 1, 3)"},
                               {CONTACT, "rotation about y through (1, 1, 3)"},
                               {NOTHING, NULL}});
-  memory_free(a);
-  scene_free(s);
 }
-END_TEST
 
 /* As of the lips of a crack; the parts sum to 1 but for rounding. */
-START_TEST(pair_within_a_body_holds_nothing) {
+TEST(pair_within_a_body_holds_nothing) {
   enum { N = 4 };
-  scene *s = square();
+  SCENE *s = square();
   size_t start[N + 1];
   int master[3 * N];
   double part[6 * N];
@@ -420,11 +372,9 @@ START_TEST(pair_within_a_body_holds_nothing) {
                               {NOTHING, "translation along y"},
                               {NOTHING, "rotation about (1.5, 1)"},
                               {NOTHING, NULL}});
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(bodies_of_a_pair_on_rollers_slide_together) {
+TESTS(bodies_of_a_pair_on_rollers_slide_together, 3) {
   stack *k = stack_new("-P", sides[_i], 0);
   stack_fix(k, 1);
   joined_motions_are(k, (joined[]){{NOTHING, 0, 0, "translation along x"},
@@ -434,9 +384,8 @@ START_TEST(bodies_of_a_pair_on_rollers_slide_together) {
                                    {NOTHING, 0, 0, NULL}});
   stack_free(k);
 }
-END_TEST
 
-START_TEST(tied_body_is_held_with_its_partner) {
+TESTS(tied_body_is_held_with_its_partner, 3) {
   for (int gap = 0; gap < 2; ++gap) {
     stack *k = stack_new("-TT", sides[_i], gap / 64.0);
     joined_motions_are(k,
@@ -450,9 +399,8 @@ START_TEST(tied_body_is_held_with_its_partner) {
     stack_free(k);
   }
 }
-END_TEST
 
-START_TEST(body_on_a_tied_one_that_is_held_is_a_set_alone) {
+TESTS(body_on_a_tied_one_that_is_held_is_a_set_alone, 3) {
   stack *k = stack_new("-TP", sides[_i], 0);
   stack_fix(k, 0);
   stack_fix(k, 1);
@@ -462,9 +410,8 @@ START_TEST(body_on_a_tied_one_that_is_held_is_a_set_alone) {
                                    {NOTHING, 0, 0, NULL}});
   stack_free(k);
 }
-END_TEST
 
-START_TEST(stack_of_three_is_one_set_held_by_contact) {
+TESTS(stack_of_three_is_one_set_held_by_contact, 3) {
   stack *k = stack_new("OPP", sides[_i], 0);
   joined_motions_are(k, (joined[]){{FRICTION, 0, 0, "translation along x"},
                                    {FRICTION, 0, 1, "translation along x"},
@@ -478,12 +425,11 @@ START_TEST(stack_of_three_is_one_set_held_by_contact) {
                                    {NOTHING, 0, 0, NULL}});
   stack_free(k);
 }
-END_TEST
 
 /* The body in the middle has nothing but its neighbours. */
-START_TEST(body_without_a_joint_below_is_named) {
+TESTS(body_without_a_joint_below_is_named, 3) {
   stack *k = stack_new("O-P", sides[_i], 0.25);
-  free_motion *list;
+  OWNED free_motion *list = NULL;
   int n;
   stack_fix(k, 0);
   for (int q = 0; q <= k->cells[0]; ++q) k->s->surface.held[2 * q + 1] = 1;
@@ -493,21 +439,19 @@ START_TEST(body_without_a_joint_below_is_named) {
     ck_assert_int_eq(list[i].set_id, i < 2 ? 0 : 1);
     ck_assert_int_eq(list[i].held_by == HELD_BY_NOTHING, i >= 2 && i < 5);
   }
-  memory_free(list);
   stack_free(k);
 }
-END_TEST
 
 /* Node 0 alone joins the two, by a tie or by contact; they slide over each
  * other, or turn about it. */
-START_TEST(bodies_joined_at_the_first_node_alone_are_one_set) {
-  mesh *a = make_grid_2d((int[]){2, 2}, (double[]){1, 1});
-  scene *s = scene_new(grid_join(a, a, (double[]){-1, -1}), PLANE_STRAIN, 1);
+TESTS(bodies_joined_at_the_first_node_alone_are_one_set, 2) {
+  OWNED mesh *a = make_grid_2d((int[]){2, 2}, (double[]){1, 1});
+  SCENE *s = scene_new(grid_join(a, a, (double[]){-1, -1}), PLANE_STRAIN, 1);
   int at[] = {0}, above[] = {17};
   double part[] = {1, 1};
   node_links to = {2, 1, (size_t[]){0, 1}, above, part};
   const tie_set ties = {1, at, to};
-  free_motion *list;
+  OWNED free_motion *list = NULL;
   int n;
   if (_i == 0) s->d.ties = &ties;
   if (_i == 1) {
@@ -524,65 +468,15 @@ START_TEST(bodies_joined_at_the_first_node_alone_are_one_set) {
                                       : i == 4 ? HELD_BY_FRICTION
                                                : HELD_BY_CONTACT);
   }
-  memory_free(list);
-  memory_free(a);
-  scene_free(s);
 }
-END_TEST
 
-START_TEST(every_refused_request_is_survived) {
+TEST(every_refused_request_is_survived) {
   stack *k = stack_new("OTP", sides[1], 0);
   scene *s = k->s;
-  const size_t before = memory_in_use();
-  for (long r = 1;; ++r) {
-    free_motion *list;
-    int n;
-    const long seen = memory_requests();
-    memory_refuse(r, 0);
-    const status st = domain_free_motions(&s->d, &n, &list);
-    memory_refuse(0, 0);
-    const int reached = memory_requests() - seen >= r;
-    ck_assert_int_eq(st, reached ? ERR_MEMORY : OK);
-    memory_free(list);
-    ck_assert_uint_eq(memory_in_use(), before);
-    if (!reached) break;
-  }
+  free_motion *list;
+  int n;
+  UNIT_REFUSED(1, domain_free_motions(&s->d, &n, &list), memory_free(list));
   stack_free(k);
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("support");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_test(tests, free_square_has_three_motions);
-  tcase_add_test(tests, pinned_square_turns_about_the_pin);
-  tcase_add_test(tests, square_on_rollers_slides);
-  tcase_add_test(tests, lying_square_is_held_by_contact_and_friction);
-  tcase_add_test(tests, one_contact_node_lets_the_body_turn_about_it);
-  tcase_add_test(tests, cap_in_a_socket_turns_by_its_centre);
-  tcase_add_test(tests, second_obstacle_counts_as_contact_not_friction);
-  tcase_add_test(tests, turned_body_moves_along_its_axis);
-  tcase_add_test(tests, cube_on_an_edge_turns_about_it);
-  tcase_add_test(tests,
-                 lying_cube_has_three_motions_of_friction_and_three_of_contact);
-  tcase_add_test(tests, thread_lets_the_body_screw);
-  tcase_add_test(tests, units_of_length_change_nothing);
-  tcase_add_test(tests, second_body_is_named);
-  tcase_add_test(tests, piece_on_a_hinge_is_found);
-  tcase_add_loop_test(tests, chain_of_pieces_turns_at_every_hinge, 0, 3);
-  tcase_add_loop_test(tests, pair_with_a_supported_body_holds_like_an_obstacle,
-                      0, 6);
-  tcase_add_loop_test(tests, pair_of_free_bodies_moves_as_one, 0, 6);
-  tcase_add_test(tests, cube_on_a_cube_is_held_like_on_the_ground);
-  tcase_add_test(tests, pair_within_a_body_holds_nothing);
-  tcase_add_loop_test(tests, bodies_of_a_pair_on_rollers_slide_together, 0, 3);
-  tcase_add_loop_test(tests, tied_body_is_held_with_its_partner, 0, 3);
-  tcase_add_loop_test(tests, body_on_a_tied_one_that_is_held_is_a_set_alone, 0,
-                      3);
-  tcase_add_loop_test(tests, stack_of_three_is_one_set_held_by_contact, 0, 3);
-  tcase_add_loop_test(tests, body_without_a_joint_below_is_named, 0, 3);
-  tcase_add_loop_test(tests, bodies_joined_at_the_first_node_alone_are_one_set,
-                      0, 2);
-  tcase_add_test(tests, every_refused_request_is_survived);
-  return unit_run("support", tests);
-}
+UNIT_MAIN("support")

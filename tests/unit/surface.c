@@ -1,12 +1,11 @@
 /* src/contact/surface.c on boundary meshes made by hand: closed forms of areas,
  * normals and gaps, corners, fixed nodes and every message. */
-#include "base/base.h"
 #include "support/faces.h"
 #include "support/formula.h"
 #include "support/unit.h"
 
-START_TEST(areas_of_a_polyline_are_half_sums_times_thickness) {
-  face_scene c;
+TEST(areas_of_a_polyline_are_half_sums_times_thickness) {
+  FACE_SCENE c;
   faces_begin(&c, 2);
   static const double x[][2] = {{0, 0}, {3, 4}, {3, 6}, {11, 12}};
   for (int i = 0; i < 4; ++i) faces_node(&c, x[i][0], x[i][1], 0);
@@ -18,13 +17,11 @@ START_TEST(areas_of_a_polyline_are_half_sums_times_thickness) {
   static const double area[] = {5, 5 + 2, 2 + 2.5, 2.5};
   for (int i = 0; i < 4; ++i) ck_assert_double_eq(c.s->area[i], area[i]);
   ck_assert_uint_eq(c.s->node_no[3], 1003);
-  faces_end(&c);
 }
-END_TEST
 
 /* Only faces of the group count: the rest of the boundary has no share. */
-START_TEST(faces_outside_the_group_have_no_share) {
-  face_scene c;
+TEST(faces_outside_the_group_have_no_share) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "FOOT", 1, 3);
   ck_assert_int_eq(faces_build(&c), OK);
@@ -32,9 +29,7 @@ START_TEST(faces_outside_the_group_have_no_share) {
   ck_assert_int_eq(c.s->node_id[0], 1);
   ck_assert_double_eq(c.s->area[0], 0.125);
   ck_assert_double_eq(faces_area(c.s), 0.5);
-  faces_end(&c);
 }
-END_TEST
 
 /* Simpson's rule is exact for the quadratic phi(s) 2 pi r(s). */
 static double ring_share(double r0, double r1, double length, int end) {
@@ -42,8 +37,8 @@ static double ring_share(double r0, double r1, double length, int end) {
   return length / 6 * (4 * middle + 2 * pi * (end ? r1 : r0));
 }
 
-START_TEST(axisymmetric_areas_are_integrals_around_the_axis) {
-  face_scene c;
+TEST(axisymmetric_areas_are_integrals_around_the_axis) {
+  FACE_SCENE c;
   double pi = acos(-1);
   faces_begin(&c, 2);
   c.in.axisymmetric = 1;
@@ -62,14 +57,12 @@ START_TEST(axisymmetric_areas_are_integrals_around_the_axis) {
   double nx = cone * 0.8, ny = -cone * 0.6 - ring, l = hypot(nx, ny);
   ck_assert_double_eq_tol(c.s->frame[4], nx / l, 1e-14);
   ck_assert_double_eq_tol(c.s->frame[5], ny / l, 1e-14);
-  faces_end(&c);
 }
-END_TEST
 
 /* Regular polygon: normals are radial, by symmetry. */
-START_TEST(normals_of_a_circle_are_radial) {
+TEST(normals_of_a_circle_are_radial) {
   enum { K = 48 };
-  face_scene c;
+  FACE_SCENE c;
   double pi = acos(-1), shift = 1e4;
   faces_begin(&c, 2);
   for (int i = 0; i < K; ++i)
@@ -86,11 +79,9 @@ START_TEST(normals_of_a_circle_are_radial) {
     ck_assert(f[2] == -f[1] && f[3] == f[0]);
   }
   ck_assert_double_eq_tol(faces_area(c.s), 2 * K * sin(pi / K), 1e-9);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(normals_and_areas_of_an_octahedron) {
+TEST(normals_and_areas_of_an_octahedron) {
   face_scene c;
   double pi = acos(-1);
   faces_begin(&c, 3);
@@ -112,13 +103,12 @@ START_TEST(normals_and_areas_of_an_octahedron) {
   }
   faces_end(&c);
 }
-END_TEST
 
 /* A tilted plane cut into unequal triangles has one normal, far from the
  * origin too. */
-START_TEST(plane_has_one_normal_whatever_its_triangles) {
+TEST(plane_has_one_normal_whatever_its_triangles) {
   enum { K = 9 };
-  face_scene c;
+  FACE_SCENE c;
   faces_begin(&c, 3);
   for (int j = 0; j < K; ++j)
     for (int i = 0; i < K; ++i) {
@@ -138,16 +128,14 @@ START_TEST(plane_has_one_normal_whatever_its_triangles) {
     ck_assert_double_eq_tol(c.s->frame[9 * i + 1], 0, 1e-9);
     ck_assert_double_eq_tol(c.s->frame[9 * i + 2], 0.6, 1e-9);
   }
-  faces_end(&c);
 }
-END_TEST
 
 /* A square of two triangles: a third of either is that of the tied corner. */
-START_TEST(area_of_a_tied_corner_is_shared_by_the_others) {
+TEST(area_of_a_tied_corner_is_shared_by_the_others) {
   static const double area[] = {0.25, 0.5, 0.25};
   int tied = 0;
   size_t start[2] = {0, 0};
-  face_scene c;
+  FACE_SCENE c;
   faces_begin(&c, 3);
   for (int i = 0; i < 4; ++i) faces_node(&c, i % 3 > 0, i > 1, 0);
   faces_face(&c, 0, 1, 2);
@@ -158,12 +146,10 @@ START_TEST(area_of_a_tied_corner_is_shared_by_the_others) {
   ck_assert_int_eq(c.s->n, 3);
   for (int i = 0; i < 3; ++i)
     ck_assert_double_eq_tol(c.s->area[i], area[i], 1e-15);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(fixed_direction_is_held_as_tangent) {
-  face_scene c;
+TEST(fixed_direction_is_held_as_tangent) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   c.x[2 * 4 + 1] = 0.1;
   c.fixed[4] = c.fixed[faces_node(&c, 1, 1, 0)] = 1;
@@ -179,16 +165,14 @@ START_TEST(fixed_direction_is_held_as_tangent) {
     ck_assert_int_eq(c.s->held[2 * i + 1], i == 4);
   }
   ck_assert_int_eq(faces_said(&c, "P4"), 0);
-  faces_end(&c);
 }
-END_TEST
 
 /* The end of an arc at x = 1: smooth across a plane of symmetry, all of whose
  * nodes are held, two at least; else it leans as its face. */
-START_TEST(held_end_of_an_arc_leans_without_symmetry) {
+TEST(held_end_of_an_arc_leans_without_symmetry) {
   const double pi = acos(-1);
   for (int other = 0; other < 3; ++other) { /* none, free, held */
-    face_scene c;
+    FACE_SCENE c;
     faces_begin(&c, 2);
     for (int i = -4; i <= 0; ++i)
       faces_node(&c, 1 + sin(i * pi / 12), 1 - cos(i * pi / 12), 0);
@@ -199,13 +183,11 @@ START_TEST(held_end_of_an_arc_leans_without_symmetry) {
     ck_assert_int_eq(faces_build(&c), OK);
     ck_assert_double_eq_tol(c.s->frame[16], other > 1 ? 0 : -sin(pi / 24),
                             1e-15);
-    faces_end(&c);
   }
 }
-END_TEST
 
-START_TEST(nodes_fixed_along_the_normal_are_left_out_and_named) {
-  face_scene c;
+TEST(nodes_fixed_along_the_normal_are_left_out_and_named) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   c.x[2 * 2 + 1] = 1e-9;
   c.fixed[0] = 2;
@@ -219,12 +201,10 @@ START_TEST(nodes_fixed_along_the_normal_are_left_out_and_named) {
   ck_assert_int_eq(message_count(c.log, WARNING), 1);
   ck_assert_int_eq(faces_said(&c, "P4002"), 1);
   ck_assert_int_eq(faces_said(&c, "3, the first is node 1000 at (0, 0)"), 1);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(gap_is_measured_along_the_normal_of_the_node) {
-  face_scene c;
+TEST(gap_is_measured_along_the_normal_of_the_node) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 8);
   faces_contact(&c, "FOOT", 0, 8);
   c.support[0] = (obstacle){.name = "ROLL",
@@ -236,12 +216,10 @@ START_TEST(gap_is_measured_along_the_normal_of_the_node) {
     double a = c.s->x[2 * i] - 0.25;
     ck_assert_double_eq_tol(c.s->gap0[i], 2.125 - sqrt(4 - a * a), 1e-15);
   }
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(nodes_out_of_reach_are_left_out_with_a_note) {
-  face_scene c;
+TEST(nodes_out_of_reach_are_left_out_with_a_note) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 8);
   faces_contact(&c, "FOOT", 0, 8);
   c.support[0] = (obstacle){.name = "BALL",
@@ -252,24 +230,20 @@ START_TEST(nodes_out_of_reach_are_left_out_with_a_note) {
   ck_assert_int_eq(c.s->n, 5);
   ck_assert_int_eq(message_count(c.log, NOTE), 1);
   ck_assert_int_eq(faces_said(&c, "4 nodes cannot reach"), 1);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(contact_that_reaches_nothing_is_an_error) {
-  face_scene c;
+TEST(contact_that_reaches_nothing_is_an_error) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "FOOT", 0, 4);
   c.support[0].shape = OBSTACLE_PLANE;
   c.support[0].direction[1] = -1;
   ck_assert_int_eq(faces_build(&c), ERR_DECK);
   ck_assert_int_eq(faces_said(&c, "P4010"), 1);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(penetration_is_told_with_the_deepest_node) {
-  face_scene c;
+TEST(penetration_is_told_with_the_deepest_node) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   c.x[2 * 3 + 1] = -0.25;
   c.x[2 * 1 + 1] = -0.125;
@@ -281,12 +255,10 @@ START_TEST(penetration_is_told_with_the_deepest_node) {
   ck_assert(c.s->gap0[3] < -0.2);
   ck_assert_int_eq(faces_said(&c, "P4004"), 1);
   ck_assert_int_eq(faces_said(&c, "node 1003"), 1);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(rounding_is_no_penetration) {
-  face_scene c;
+TEST(rounding_is_no_penetration) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   c.x[2 * 3 + 1] = -1e-16;
   faces_contact(&c, "FOOT", 0, 4);
@@ -294,12 +266,10 @@ START_TEST(rounding_is_no_penetration) {
   c.support[0].direction[1] = 1;
   ck_assert_int_eq(faces_build(&c), OK);
   ck_assert_int_eq(faces_said(&c, "P4"), 0);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(gap_that_is_no_number_names_the_node) {
-  face_scene c;
+TEST(gap_that_is_no_number_names_the_node) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "FOOT", 0, 4);
   c.support[0].shape = OBSTACLE_GAP;
@@ -308,12 +278,10 @@ START_TEST(gap_that_is_no_number_names_the_node) {
   ck_assert_int_eq(faces_said(&c, "P4007"), 1);
   ck_assert_int_eq(faces_said(&c, "node 1004 at (1, 0)"), 1);
   formula_release(&c.support[0].gap);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(gap_that_ends_to_be_a_number_stops_the_run) {
-  face_scene c;
+TEST(gap_that_ends_to_be_a_number_stops_the_run) {
+  FACE_SCENE c;
   double gap[5];
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "FOOT", 0, 4);
@@ -325,14 +293,12 @@ START_TEST(gap_that_ends_to_be_a_number_stops_the_run) {
   ck_assert_int_eq(surface_gap(c.s, &c.in, 1.1, gap, NULL), ERR_DECK);
   ck_assert_ptr_nonnull(strstr(status_message(), "node 1000"));
   formula_release(&c.support[0].gap);
-  faces_end(&c);
 }
-END_TEST
 
 /* A plane of slope 3/4 that moves by (t, t/2): the gap along (0, -1) changes by
  * 3/4 t - t/2, the obstacle passes the node by t along x. */
-START_TEST(moving_plane_changes_gap_and_place_of_stick) {
-  face_scene c;
+TEST(moving_plane_changes_gap_and_place_of_stick) {
+  FACE_SCENE c;
   double gap[5], motion[10] = {0};
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "FOOT", 0, 4);
@@ -355,14 +321,12 @@ START_TEST(moving_plane_changes_gap_and_place_of_stick) {
   }
   formula_release(&c.support[0].motion[0]);
   formula_release(&c.support[0].motion[1]);
-  faces_end(&c);
 }
-END_TEST
 
 /* A slope on a level plane: along the normal of the body, and straight down. */
-START_TEST(normal_is_that_of_the_obstacle_if_asked_for) {
+TEST(normal_is_that_of_the_obstacle_if_asked_for) {
   for (int of_obstacle = 0; of_obstacle < 2; ++of_obstacle) {
-    face_scene c;
+    FACE_SCENE c;
     faces_begin(&c, 2);
     faces_node(&c, 0, 1, 0);
     faces_node(&c, 4, 4, 0);
@@ -376,14 +340,12 @@ START_TEST(normal_is_that_of_the_obstacle_if_asked_for) {
     ck_assert_double_eq_tol(c.s->frame[1], -down, 1e-15);
     ck_assert_double_eq_tol(c.s->gap0[1], 4 / down, 1e-14);
     ck_assert_double_eq(c.s->area[0], 2.5);
-    faces_end(&c);
   }
 }
-END_TEST
 
 /* A ball that rolls below the body: nodes it does not reach yet stay. */
-START_TEST(nodes_that_a_moving_obstacle_may_reach_stay) {
-  face_scene c;
+TEST(nodes_that_a_moving_obstacle_may_reach_stay) {
+  FACE_SCENE c;
   double gap[9];
   faces_flat_bottom(&c, 8);
   faces_contact(&c, "FOOT", 0, 8);
@@ -399,12 +361,10 @@ START_TEST(nodes_that_a_moving_obstacle_may_reach_stay) {
   ck_assert_double_eq(gap[8], 0);
   ck_assert_double_eq(gap[0], SURFACE_UNMET * c.m.size);
   formula_release(&c.support[0].motion[0]);
-  faces_end(&c);
 }
-END_TEST
 
-START_TEST(groups_that_are_no_boundary_are_refused) {
-  face_scene c;
+TEST(groups_that_are_no_boundary_are_refused) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   faces_contact(&c, "FOOT", 0, 2);
   faces_contact(&c, "BODY", 2, 4);
@@ -412,16 +372,14 @@ START_TEST(groups_that_are_no_boundary_are_refused) {
   c.group[1].dim = 2;
   ck_assert_int_eq(faces_build(&c), ERR_DECK);
   ck_assert_int_eq(faces_said(&c, "P4001"), 2);
-  faces_end(&c);
 }
-END_TEST
 
 /* The faces of both sides of a fin, cut in three and in six, cancel but for
  * rounding at the node in their middle. */
-START_TEST(fin_without_thickness_has_no_normal) {
+TEST(fin_without_thickness_has_no_normal) {
   const double tilt[2][3] = {{0.6, 0.48, 0.64}, {-0.8, 0.36, 0.48}};
   const double at[3][2] = {{1.1, 0.3}, {-0.7, 0.9}, {-0.2, -1.3}};
-  face_scene c;
+  FACE_SCENE c;
   faces_begin(&c, 3);
   faces_node(&c, 0, 0, 0);
   for (int k = 0; k < 6; ++k) {
@@ -438,20 +396,17 @@ START_TEST(fin_without_thickness_has_no_normal) {
   faces_contact(&c, "FIN", 0, 9);
   ck_assert_int_eq(faces_build(&c), ERR_DECK);
   ck_assert_int_eq(faces_said(&c, "no outward normal at node 1000"), 1);
-  faces_end(&c);
 }
-END_TEST
 
 /* A disc in a bush, its segments of angles 2a and 2b in turn: the mean normal
  * of a node is orthogonal to the line through its neighbours, b - a off the
  * radius. */
-START_TEST(turned_normals_of_a_disc_in_a_bush_are_told) {
+TEST(turned_normals_of_a_disc_in_a_bush_are_told) {
   enum { K = 24 };
   const double pi = acos(-1);
   for (int of_obstacle = 0; of_obstacle < 2; ++of_obstacle)
     for (int uneven = 0; uneven < 2; ++uneven) {
-      face_scene c;
-      char text[32];
+      FACE_SCENE c;
       double off = uneven * 0.0625 * pi / K;
       faces_begin(&c, 2);
       for (int i = 0; i < K; ++i) {
@@ -464,19 +419,17 @@ START_TEST(turned_normals_of_a_disc_in_a_bush_are_told) {
           .name = "BUSH", .shape = OBSTACLE_CYLINDER, .inside = 1, .radius = 1};
       c.pair[0].obstacle_normal = of_obstacle;
       ck_assert_int_eq(faces_build(&c), OK);
-      snprintf(text, sizeof text, "up to %.2g rad", 2 * off);
+      PRINTED(text, "up to %.2g rad", 2 * off);
       ck_assert_int_eq(faces_said(&c, text), uneven && !of_obstacle);
       ck_assert_int_eq(faces_said(&c, "P4018"), uneven && !of_obstacle);
-      faces_end(&c);
     }
 }
-END_TEST
 
 /* A plane below the end of a flat bottom leans by 0.005 rad, which a node held
  * along the bottom does not see. */
-START_TEST(held_node_sees_no_turned_normal) {
+TEST(held_node_sees_no_turned_normal) {
   for (int held = 0; held < 2; ++held) {
-    face_scene c;
+    FACE_SCENE c;
     faces_flat_bottom(&c, 2);
     c.fixed[2] = held > 0;
     faces_contact(&c, "FOOT", 0, 2);
@@ -487,13 +440,11 @@ START_TEST(held_node_sees_no_turned_normal) {
     ck_assert_int_eq(faces_build(&c), OK);
     ck_assert_int_eq(faces_said(&c, "up to 0.005 rad"), !held);
     ck_assert_int_eq(faces_said(&c, "P4018"), !held);
-    faces_end(&c);
   }
 }
-END_TEST
 
-START_TEST(sphere_off_the_axis_is_refused) {
-  face_scene c;
+TEST(sphere_off_the_axis_is_refused) {
+  FACE_SCENE c;
   faces_flat_bottom(&c, 4);
   c.in.axisymmetric = 1;
   faces_contact(&c, "FOOT", 0, 4);
@@ -503,9 +454,7 @@ START_TEST(sphere_off_the_axis_is_refused) {
                             .point = {0.1, -2, 0}};
   ck_assert_int_eq(faces_build(&c), ERR_DECK);
   ck_assert_int_eq(faces_said(&c, "P4009"), 1);
-  faces_end(&c);
 }
-END_TEST
 
 /* A curved patch and a sphere, all lengths times 2^power. */
 static void curved_patch(face_scene *c, int power) {
@@ -528,7 +477,7 @@ static void curved_patch(face_scene *c, int power) {
   ck_assert_int_eq(faces_build(c), OK);
 }
 
-START_TEST(lengths_times_a_power_of_two_scale_every_bit) {
+TEST(lengths_times_a_power_of_two_scale_every_bit) {
   static const int powers[] = {-40, -3, 40};
   face_scene a, b;
   curved_patch(&a, 0);
@@ -544,9 +493,8 @@ START_TEST(lengths_times_a_power_of_two_scale_every_bit) {
   }
   faces_end(&a);
 }
-END_TEST
 
-START_TEST(refused_memory_is_reported_and_given_back) {
+TEST(refused_memory_is_reported_and_given_back) {
   long k = 0;
   for (status st = ERR_MEMORY; st != OK;) {
     face_scene c;
@@ -565,29 +513,5 @@ START_TEST(refused_memory_is_reported_and_given_back) {
   }
   ck_assert_int_gt(k, 14);
 }
-END_TEST
 
-UNIT_MAIN("surface", areas_of_a_polyline_are_half_sums_times_thickness,
-          faces_outside_the_group_have_no_share,
-          axisymmetric_areas_are_integrals_around_the_axis,
-          normals_of_a_circle_are_radial, normals_and_areas_of_an_octahedron,
-          plane_has_one_normal_whatever_its_triangles,
-          area_of_a_tied_corner_is_shared_by_the_others,
-          fixed_direction_is_held_as_tangent,
-          held_end_of_an_arc_leans_without_symmetry,
-          nodes_fixed_along_the_normal_are_left_out_and_named,
-          gap_is_measured_along_the_normal_of_the_node,
-          nodes_out_of_reach_are_left_out_with_a_note,
-          contact_that_reaches_nothing_is_an_error,
-          penetration_is_told_with_the_deepest_node, rounding_is_no_penetration,
-          gap_that_is_no_number_names_the_node,
-          gap_that_ends_to_be_a_number_stops_the_run,
-          moving_plane_changes_gap_and_place_of_stick,
-          normal_is_that_of_the_obstacle_if_asked_for,
-          nodes_that_a_moving_obstacle_may_reach_stay,
-          groups_that_are_no_boundary_are_refused,
-          fin_without_thickness_has_no_normal,
-          turned_normals_of_a_disc_in_a_bush_are_told,
-          held_node_sees_no_turned_normal, sphere_off_the_axis_is_refused,
-          lengths_times_a_power_of_two_scale_every_bit,
-          refused_memory_is_reported_and_given_back)
+UNIT_MAIN("surface")

@@ -1,5 +1,4 @@
 /* src/output/tabular.c: JOB.dat of a made-up run, read back word by word. */
-#include "base/base.h"
 #include "output/writers.h"
 #include "support/folder.h"
 #include "support/made_up.h"
@@ -8,10 +7,9 @@
 /* The whole JOB.dat of "told" increments, closed after "cut" of them and opened
  * again where it ended; caller frees. */
 static char *write_cut(made_up *made, int told, int cut) {
-  char dir[64];
   long length = -1;
   tabular *t = NULL;
-  folder_new(dir);
+  FOLDER(dir);
   for (int from = 0, to = cut; from < told; from = to, to = told) {
     ck_assert_int_eq(tabular_open(&made->m, made->msh, dir, length, &t), OK);
     for (int i = from + 1; i <= to; ++i) {
@@ -22,9 +20,7 @@ static char *write_cut(made_up *made, int told, int cut) {
     ck_assert_int_eq(tabular_close(t), OK);
     if (to == told) break;
   }
-  char *text = folder_file(dir, "block.dat", NULL);
-  folder_remove(dir);
-  return text;
+  return folder_file(dir, "block.dat", NULL);
 }
 
 static char *write_tables(made_up *made, int told) {
@@ -33,8 +29,7 @@ static char *write_tables(made_up *made, int told) {
 
 /* Text of block number k of a kind, ended by the first empty line. */
 static char *block_of(const char *text, const char *kind, int k) {
-  char head[40];
-  snprintf(head, sizeof head, " table %s", kind);
+  PRINTED(head, " table %s", kind);
   const char *p = text;
   for (int i = 0; i <= k; ++i) {
     p = strstr(p, head);
@@ -86,9 +81,9 @@ static int count_rows(const char *block) {
   return n;
 }
 
-START_TEST(nodes_read_back_exactly_in_the_order_of_their_numbers) {
-  made_up *made = made_up_new(3, 2, 2);
-  char *text = write_tables(made, 2), *block = block_of(text, "NODES", 1);
+TEST(nodes_read_back_exactly_in_the_order_of_their_numbers) {
+  MADE_UP *made = made_up_new(3, 2, 2);
+  FREED char *text = write_tables(made, 2), *block = block_of(text, "NODES", 1);
   int n = made->msh->n_node;
   ck_assert_int_eq(count_rows(block), n);
   for (int row = 1; row <= n; ++row) {
@@ -100,17 +95,14 @@ START_TEST(nodes_read_back_exactly_in_the_order_of_their_numbers) {
     ck_assert(number(block, row, "u_z[length]") ==
               made_up_value(MADE_U, 3 * id + 2, 2));
   }
-  free(block);
-  free(text);
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(contact_table_has_signs_and_words) {
+TEST(contact_table_has_signs_and_words) {
   char word[80];
   const char *const words[] = {"OPEN", "SLIP", "STICK"};
-  made_up *made = made_up_new(2, 3, 2);
-  char *text = write_tables(made, 2), *block = block_of(text, "CONTACT", 0);
+  MADE_UP *made = made_up_new(2, 3, 2);
+  FREED char *text = write_tables(made, 2),
+             *block = block_of(text, "CONTACT", 0);
   int n = made->surface.n;
   ck_assert_int_eq(count_rows(block), n);
   for (int row = 1; row <= n; ++row) {
@@ -125,14 +117,10 @@ START_TEST(contact_table_has_signs_and_words) {
     cell(block, row, column_named(block, "status[-]"), word);
     ck_assert_str_eq(word, words[(id + 1) % 3]);
   }
-  free(block);
-  free(text);
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(element_table_names_components_by_scene) {
-  made_up *made = made_up_new(2, 2, 1);
+TEST(element_table_names_components_by_scene) {
+  MADE_UP *made = made_up_new(2, 2, 1);
   char *text = write_tables(made, 1), *block = block_of(text, "ELEMENTS", 0);
   ck_assert_int_eq(count_rows(block), made->msh->n_elem);
   ck_assert(number(block, 3, "stress_xy[force/length^2]") ==
@@ -148,24 +136,19 @@ START_TEST(element_table_names_components_by_scene) {
   ck_assert_ptr_nonnull(strstr(text, " r[length]"));
   free(block);
   free(text);
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(labels_stand_in_the_header) {
-  made_up *made = made_up_new(2, 1, 1);
+TEST(labels_stand_in_the_header) {
+  MADE_UP *made = made_up_new(2, 1, 1);
   made->m.unit.length = "mm";
   made->m.unit.force = "kN";
   made->m.unit.time = "s";
-  char *text = write_tables(made, 1);
+  FREED char *text = write_tables(made, 1);
   ck_assert_ptr_nonnull(strstr(text, " pressure[kN/mm^2]"));
   ck_assert_ptr_nonnull(strstr(text, " strain_energy[kN*mm]"));
   ck_assert_ptr_nonnull(strstr(text, " time[s]"));
   ck_assert_ptr_null(strstr(text, "length"));
-  free(text);
-  made_up_free(made);
 }
-END_TEST
 
 static int count_blocks(const char *text, const char *kind) {
   int n = 0;
@@ -173,11 +156,11 @@ static int count_blocks(const char *text, const char *kind) {
   return n;
 }
 
-START_TEST(frequency_means_every_nth_and_the_last) {
-  made_up *made = made_up_new(2, 1, 5);
+TEST(frequency_means_every_nth_and_the_last) {
+  MADE_UP *made = made_up_new(2, 1, 5);
   made->prints[0].frequency = 2; /* CONTACT: 2, 4, 5                         */
   made->prints[1].frequency = 0; /* TOTALS: 5                                */
-  char *text = write_tables(made, 5);
+  FREED char *text = write_tables(made, 5);
   ck_assert_int_eq(count_blocks(text, "CONTACT"), 3);
   ck_assert_int_eq(count_blocks(text, "TOTALS"), 1);
   ck_assert_int_eq(count_blocks(text, "ENERGY"), 5);
@@ -185,23 +168,20 @@ START_TEST(frequency_means_every_nth_and_the_last) {
       strstr(text,
              "# step 1 increment 5 time 2.5000000000000000E+000 table "
              "TOTALS\n"));
-  free(text);
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(groups_and_supports_choose_the_rows) {
-  made_up *made = made_up_new(2, 3, 1);
+TEST(groups_and_supports_choose_the_rows) {
+  MADE_UP *made = made_up_new(2, 3, 1);
   int right = 0;
   while (strcmp(made->msh->group[right].name, "RIGHT") != 0) ++right;
   for (int i = 0; i < 3; ++i) { /* CONTACT, TOTALS, NODES                    */
     made->prints[i].group = "RIGHT";
     made->prints[i].group_id = right;
   }
-  char *text = write_tables(made, 1);
-  char *feet = block_of(text, "CONTACT", 0);
-  char *nodes = block_of(text, "NODES", 0);
-  char *reactions = block_of(text, "REACTIONS", 0);
+  FREED char *text = write_tables(made, 1);
+  FREED char *feet = block_of(text, "CONTACT", 0);
+  FREED char *nodes = block_of(text, "NODES", 0);
+  FREED char *reactions = block_of(text, "REACTIONS", 0);
   ck_assert_int_eq(count_rows(feet), 1); /* the corner                    */
   ck_assert(number(feet, 1, "x[length]") == 1);
   ck_assert_int_eq(count_rows(nodes), 4);
@@ -210,35 +190,26 @@ START_TEST(groups_and_supports_choose_the_rows) {
   ck_assert_int_eq(count_rows(reactions), 4); /* the support TOP             */
   for (int row = 1; row <= 4; ++row)
     ck_assert(number(reactions, row, "y[length]") == 1);
-  free(feet);
-  free(nodes);
-  free(reactions);
-  free(text);
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(missing_arrays_leave_their_columns_out) {
-  made_up *made = made_up_new(2, 2, 1);
+TEST(missing_arrays_leave_their_columns_out) {
+  MADE_UP *made = made_up_new(2, 2, 1);
   made->s.body.stress = NULL;
   made->s.body.reaction = NULL;
   made->s.contacts.limit = NULL;
-  char *text = write_tables(made, 1);
+  FREED char *text = write_tables(made, 1);
   ck_assert_ptr_null(strstr(text, "stress_xx"));
   ck_assert_ptr_null(strstr(text, "reaction_x"));
   ck_assert_ptr_null(strstr(text, "limit["));
   ck_assert_ptr_nonnull(strstr(text, "strain_xx"));
-  free(text);
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(every_line_keeps_blanks_between_fields) {
-  made_up *made = made_up_new(3, 2, 1);
+TEST(every_line_keeps_blanks_between_fields) {
+  MADE_UP *made = made_up_new(3, 2, 1);
   for (int i = 0; i < made->msh->n_node; ++i)
     made->msh->node_no[i] = (size_t)99999999999 - (size_t)i;
   char *text = write_tables(made, 1), word[80];
-  char *block = block_of(text, "NODES", 0);
+  FREED char *block = block_of(text, "NODES", 0);
   int columns = 0;
   while (cell(block, 0, columns, word) != NULL) ++columns;
   ck_assert_int_eq(columns, 7);
@@ -246,45 +217,29 @@ START_TEST(every_line_keeps_blanks_between_fields) {
     ck_assert_ptr_nonnull(cell(block, row, columns - 1, word));
     ck_assert_ptr_null(cell(block, row, columns, word));
   }
-  free(block);
   free(text);
-  made_up_free(made);
 }
-END_TEST
 
 /* Also where nothing had been written yet. */
-START_TEST(a_file_that_goes_on_is_that_of_one_run) {
+TEST(a_file_that_goes_on_is_that_of_one_run) {
   enum { TOLD = 3 };
-  made_up *made = made_up_new(2, 1, TOLD);
-  char *whole = write_tables(made, TOLD);
+  MADE_UP *made = made_up_new(2, 1, TOLD);
+  FREED char *whole = write_tables(made, TOLD);
   ck_assert_ptr_nonnull(strstr(whole, " table CONTACT"));
   for (int cut = 0; cut < TOLD; ++cut) {
-    char *text = write_cut(made, TOLD, cut);
+    FREED char *text = write_cut(made, TOLD, cut);
     ck_assert_msg(strcmp(text, whole) == 0, "cut after %d", cut);
-    free(text);
   }
-  free(whole);
-  made_up_free(made);
 }
-END_TEST
 
-START_TEST(no_print_no_file) {
-  made_up *made = made_up_new(2, 1, 1);
+TEST(no_print_no_file) {
+  MADE_UP *made = made_up_new(2, 1, 1);
   tabular *t = NULL;
   made->steps[0].print.n = 0;
   ck_assert_int_eq(tabular_open(&made->m, made->msh, "/nowhere", -1, &t), OK);
   ck_assert_ptr_null(t);
   ck_assert_int_eq(tabular_increment(t, &made->s), OK);
   ck_assert_int_eq(tabular_close(t), OK);
-  made_up_free(made);
 }
-END_TEST
 
-UNIT_MAIN("tabular", nodes_read_back_exactly_in_the_order_of_their_numbers,
-          contact_table_has_signs_and_words,
-          element_table_names_components_by_scene, labels_stand_in_the_header,
-          frequency_means_every_nth_and_the_last,
-          groups_and_supports_choose_the_rows,
-          missing_arrays_leave_their_columns_out,
-          every_line_keeps_blanks_between_fields,
-          a_file_that_goes_on_is_that_of_one_run, no_print_no_file)
+UNIT_MAIN("tabular")

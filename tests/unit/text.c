@@ -1,6 +1,5 @@
 /* src/base/text.c */
 #define _GNU_SOURCE /* fopencookie */
-#include "base/base.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
@@ -8,7 +7,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-START_TEST(seventeen_digits_read_back_exactly) {
+TEST(seventeen_digits_read_back_exactly) {
   const double special[] = {0.1,    -1.0 / 3, DBL_MAX, DBL_MIN,
                             5e-324, 1e100,    -1e-100, 9.9999999999999999e22};
   for (size_t i = 0; i < sizeof special / sizeof *special; ++i)
@@ -19,9 +18,8 @@ START_TEST(seventeen_digits_read_back_exactly) {
     ck_assert(strtod(text_number(x, 16), NULL) == x);
   }
 }
-END_TEST
 
-START_TEST(exponents_have_three_digits_and_zero_no_sign) {
+TEST(exponents_have_three_digits_and_zero_no_sign) {
   ck_assert_str_eq(text_number(1.5, 4), "1.5000E+000");
   ck_assert_str_eq(text_number(-1.5e-7, 1), "-1.5E-007");
   ck_assert_str_eq(text_number(2e-300, 2), "2.00E-300");
@@ -32,9 +30,8 @@ START_TEST(exponents_have_three_digits_and_zero_no_sign) {
   ck_assert_str_eq(text_number(INFINITY, 2), "Inf");
   ck_assert_str_eq(text_number(-INFINITY, 2), "-Inf");
 }
-END_TEST
 
-START_TEST(wrapped_words_keep_their_order_and_the_indent) {
+TEST(wrapped_words_keep_their_order_and_the_indent) {
   char written[2000] = "", words[1000] = "", *line = written;
   for (int i = 0; i < 60; ++i)
     sprintf(words + strlen(words), "%.*s%d ", i % 9, "xxxxxxxxx", i);
@@ -53,26 +50,22 @@ START_TEST(wrapped_words_keep_their_order_and_the_indent) {
     ck_assert_int_eq(atoi(word + strspn(word, "x")), i);
   ck_assert_int_eq(i, 60);
 }
-END_TEST
 
-START_TEST(a_word_has_no_blank) {
+TEST(a_word_has_no_blank) {
   char word[6];
   text_word(word, sizeof word, "a\tb c d");
   ck_assert_str_eq(word, "a_b_c");
 }
-END_TEST
 
-START_TEST(paths_are_joined_once) {
+TEST(paths_are_joined_once) {
   const char *const dirs[] = {NULL, "", "out", "out/"};
   const char *const wanted[] = {"job.lst", "job.lst", "out/job.lst",
                                 "out/job.lst"};
   for (int i = 0; i < 4; ++i) {
-    char *path = text_path(dirs[i], "job", "lst");
+    OWNED char *path = text_path(dirs[i], "job", "lst");
     ck_assert_str_eq(path, wanted[i]);
-    memory_free(path);
   }
 }
-END_TEST
 
 /* A file of a disk that is full. */
 static void open_full(text_file *t, const char *path, int by_line) {
@@ -82,11 +75,10 @@ static void open_full(text_file *t, const char *path, int by_line) {
   close(full);
 }
 
-START_TEST(full_disk_is_told_with_file_and_reason) {
-  char dir[64], path[80];
+TEST(full_disk_is_told_with_file_and_reason) {
   text_file t = {0};
-  folder_new(dir);
-  snprintf(path, sizeof path, "%s/a.lst", dir);
+  FOLDER(dir);
+  PRINTED(path, "%s/a.lst", dir);
   open_full(&t, path, 1);
   fprintf(t.f, "one line\n");
   ck_assert_int_eq(text_check(&t), ERR_FILE);
@@ -97,9 +89,7 @@ START_TEST(full_disk_is_told_with_file_and_reason) {
   fprintf(t.f, "kept in the buffer until it is closed\n");
   ck_assert_int_eq(text_close(&t), ERR_FILE);
   ck_assert_ptr_nonnull(strstr(status_message(), "No space left"));
-  folder_remove(dir);
 }
-END_TEST
 
 static ssize_t refuse_blocks(void *file, const char *bytes, size_t n) {
   errno = EDQUOT;
@@ -108,7 +98,7 @@ static ssize_t refuse_blocks(void *file, const char *bytes, size_t n) {
 
 /* A write that fails while the file is checked names its own reason, not that
  * of a second one. */
-START_TEST(reason_of_a_failed_write_is_the_first) {
+TEST(reason_of_a_failed_write_is_the_first) {
   cookie_io_functions_t refuse = {.write = refuse_blocks};
   text_file t = {.f = fopencookie(NULL, "w", refuse), .path = "a.lst"};
   fprintf(t.f, "in the buffer\n");
@@ -116,9 +106,8 @@ START_TEST(reason_of_a_failed_write_is_the_first) {
   ck_assert_ptr_nonnull(strstr(status_message(), strerror(EDQUOT)));
   fclose(t.f);
 }
-END_TEST
 
-START_TEST(missing_folder_is_told) {
+TEST(missing_folder_is_told) {
   text_file t = {0};
   size_t before = memory_in_use();
   ck_assert_int_eq(text_open(&t, "/no/such/folder/a.lst", 1), ERR_FILE);
@@ -127,25 +116,20 @@ START_TEST(missing_folder_is_told) {
   ck_assert_int_eq(text_close(&t), OK);
   ck_assert_uint_eq(memory_in_use(), before);
 }
-END_TEST
 
-START_TEST(lines_are_handed_over_as_they_end) {
-  char dir[64], path[80];
-  folder_new(dir);
-  snprintf(path, sizeof path, "%s/a.sta", dir);
+TEST(lines_are_handed_over_as_they_end) {
+  FOLDER(dir);
+  PRINTED(path, "%s/a.sta", dir);
   text_file t = {0};
   ck_assert_int_eq(text_open(&t, path, 1), OK);
   fprintf(t.f, "first\nsec");
-  char *seen = folder_file(dir, "a.sta", NULL);
+  FREED char *seen = folder_file(dir, "a.sta", NULL);
   ck_assert_ptr_nonnull(strstr(seen, "first\n"));
-  free(seen);
   ck_assert_int_eq(text_close(&t), OK);
-  folder_remove(dir);
 }
-END_TEST
 
 /* What is shown, and the way back to the bytes. */
-START_TEST(text_from_outside_is_shown_without_control_characters) {
+TEST(text_from_outside_is_shown_without_control_characters) {
   static const char *const rows[][2] = {
       {"", ""},
       {"plain\ttab \303\251 \342\202\254 \360\237\230\200",
@@ -171,23 +155,14 @@ START_TEST(text_from_outside_is_shown_without_control_characters) {
   ck_assert_uint_eq(text_shown(cut, sizeof cut, "ab\033c"), 2);
   ck_assert_str_eq(cut, "ab");
 }
-END_TEST
 
 /* Fortran: what is longer is cut, what is shorter filled with blanks. */
-START_TEST(joined_as_in_fortran) {
+TEST(joined_as_in_fortran) {
   for (size_t n = 0; n <= 6; ++n) {
     char to[] = "-------";
     _gfortran_concat_string(n, to, 2, "ab", 2, "cd");
     ck_assert(memcmp(to, "abcd  ", n) == 0 && to[n] == '-');
   }
 }
-END_TEST
 
-UNIT_MAIN("text", joined_as_in_fortran,
-          text_from_outside_is_shown_without_control_characters,
-          seventeen_digits_read_back_exactly,
-          exponents_have_three_digits_and_zero_no_sign, a_word_has_no_blank,
-          wrapped_words_keep_their_order_and_the_indent, paths_are_joined_once,
-          full_disk_is_told_with_file_and_reason,
-          reason_of_a_failed_write_is_the_first, missing_folder_is_told,
-          lines_are_handed_over_as_they_end)
+UNIT_MAIN("text")

@@ -4,7 +4,6 @@
  * states, which must be told.
  */
 #include "accuracy/theorems/theorems.h"
-#include "base/base.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
@@ -79,7 +78,7 @@ static void nothing(void *ctx, const double *x, double *y) {
   for (int i = 0; i < n; ++i) y[i] = 0.0 * x[i];
 }
 
-START_TEST(largest_eigenvalues_are_those_of_closed_forms) {
+TEST(largest_eigenvalues_are_those_of_closed_forms) {
   static const int orders[] = {1, 2, 7, 50, DENSE_ORDER, DENSE_ORDER + 1, 700};
   for (size_t k = 0; k < sizeof orders / sizeof *orders; ++k) {
     int n = orders[k];
@@ -99,11 +98,10 @@ START_TEST(largest_eigenvalues_are_those_of_closed_forms) {
     ck_assert_double_eq(found, 0.0);
   }
 }
-END_TEST
 
 /* ---- the triangle ------------------------------------------------------- */
 
-START_TEST(triangle_has_its_constants) {
+TEST(triangle_has_its_constants) {
   static const struct {
     double mu, fx, fy;
     mu_regime regime;
@@ -112,7 +110,7 @@ START_TEST(triangle_has_its_constants) {
               {0.84, -1.0, 0.3, MU_BETWEEN, 1}, {1.0, -1.0, 0.3, MU_BETWEEN, 1},
               {1.0, 0.0, -1.0, MU_FREE, 0},     {0.5, 0.0, -1.0, MU_UNDER, 0}};
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
-    contact_case c = case_triangle(0.3, rows[k].mu, rows[k].fx, rows[k].fy);
+    CONTACT_CASE c = case_triangle(0.3, rows[k].mu, rows[k].fx, rows[k].fy);
     const double *K = c.A;
     double exact = sqrt(K[0] * K[3] - K[1] * K[2]) / K[0];
     looker l;
@@ -133,14 +131,12 @@ START_TEST(triangle_has_its_constants) {
     ck_assert_int_eq(t->total.why == NULL, rows[k].regime == MU_UNDER);
     ck_assert_int_eq(t->violated, 0);
     look_away(&l);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* mu = 3: slip u_t = 1.90666 r = (-1/4, 1/12) solves, and does not contract. */
-START_TEST(above_the_critical_mu_it_does_not_contract) {
-  contact_case c = case_triangle(0.3, 3.0, 1.9, -1.0);
+TEST(above_the_critical_mu_it_does_not_contract) {
+  CONTACT_CASE c = case_triangle(0.3, 3.0, 1.9, -1.0);
   looker l;
   look_at(&l, &c, 3.0);
   double s = c.f[1] > 0.0 ? 1.0 : -1.0; /* the tangent's sign along x */
@@ -153,18 +149,16 @@ START_TEST(above_the_critical_mu_it_does_not_contract) {
   ck_assert_double_eq_tol(t->contacts[0].rate, 3.0 / 1.8, 1e-9);
   ck_assert_int_eq(t->inequality_violated, 0);
   look_away(&l);
-  case_free(&c);
 }
-END_TEST
 
 /* ---- constants of any B ------------------------------------------------- */
 
 /* Largest of sum (B dp)_i |dv_t,i| over |dv| |dr|_* by climbing from random
  * starts: never above q, and most of it. */
-START_TEST(factor_bounds_what_friction_can_do) {
+TEST(factor_bounds_what_friction_can_do) {
   for (int k = 0; k < 12; ++k) {
     int dim = 2 + k % 2, n = 3 + k / 2, m = dim * n;
-    contact_case c = case_any(dim, n, 0.4, k / 2 % 2, 4100ull + (unsigned)k);
+    CONTACT_CASE c = case_any(dim, n, 0.4, k / 2 % 2, 4100ull + (unsigned)k);
     if (k % 4 > 1) case_average(&c, 2, 0.4);
     solve(&c);
     looker l;
@@ -195,10 +189,8 @@ START_TEST(factor_bounds_what_friction_can_do) {
     ck_assert_double_le(worst, q);
     ck_assert_double_gt(worst, 0.05 * q);
     look_away(&l);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* The largest eigenvalue of M[n*n], which is destroyed. */
 static double largest_of(int n, double *M) {
@@ -209,12 +201,12 @@ static double largest_of(int n, double *M) {
 
 /* Limits by the pressure of neighbours: B A_nn B' and inv(A)_tt entry by entry,
  * q the root of the product of their largest eigenvalues. */
-START_TEST(factor_is_that_of_the_matrices) {
+TEST(factor_is_that_of_the_matrices) {
   for (int dim = 2; dim < 4; ++dim) {
     enum { N = 5 };
     const int m = dim * N, tangents = (dim - 1) * N;
     double W[15 * 15], B[N * N] = {0.0}, nn[N * N] = {0.0}, tt[10 * 10];
-    contact_case c = case_any(dim, N, 0.4, 0, 4200ull + (unsigned)dim);
+    CONTACT_CASE c = case_any(dim, N, 0.4, 0, 4200ull + (unsigned)dim);
     theorems_contact found = {0};
     energy_norm e;
     case_average(&c, 2, 0.4);
@@ -238,14 +230,12 @@ START_TEST(factor_is_that_of_the_matrices) {
     const double exact = sqrt(largest_of(N, nn) * largest_of(tangents, tt));
     ck_assert_double_eq_tol(found.factor, exact, 1e-11 * exact);
     energy_norm_free(&e);
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A node with a limit of its own, one with mu; the first is the softer. */
-START_TEST(tangent_counts_given_limits_if_told) {
-  contact_case c = case_new(2, 2, 0.3);
+TEST(tangent_counts_given_limits_if_told) {
+  CONTACT_CASE c = case_new(2, 2, 0.3);
   theorems_contact with = {0}, without = {0};
   energy_norm e;
   const double diagonal[] = {2, 0.5, 2, 4};
@@ -258,9 +248,7 @@ START_TEST(tangent_counts_given_limits_if_told) {
   ck_assert_double_eq_tol(with.tangent, 2.0, 1e-12);
   ck_assert_double_eq_tol(without.tangent, 0.25, 1e-12);
   energy_norm_free(&e);
-  case_free(&c);
 }
-END_TEST
 
 /* ---- bounds ------------------------------------------------------------- */
 
@@ -269,12 +257,12 @@ static void scale_friction(contact_case *c, double factor) {
 }
 
 /* Increments under random loads, gaps that move and obstacles that drift. */
-START_TEST(bounds_hold_under_the_guaranteed_limit) {
+TEST(bounds_hold_under_the_guaranteed_limit) {
   int checked = 0;
   for (int k = 0; k < 60; ++k) {
     int dim = 2 + k % 2, n = 1 + k % 9;
     double share = k % 3 == 0 ? 0.95 : 0.5;
-    contact_case c = case_any(dim, n, 0.3, k / 2 % 2, 5200ull + (unsigned)k);
+    CONTACT_CASE c = case_any(dim, n, 0.3, k / 2 % 2, 5200ull + (unsigned)k);
     unsigned long long seed = 91 + (unsigned)k;
     looker l;
     if (k % 5 == 4) case_average(&c, 2, 0.3);
@@ -305,15 +293,13 @@ START_TEST(bounds_hold_under_the_guaranteed_limit) {
         c.f[i] += 0.3 * (case_random(&seed) - 0.5);
     }
     look_away(&l);
-    case_free(&c);
   }
   ck_assert_int_gt(checked, 60); /* they are not idle */
 }
-END_TEST
 
 /* An answer that is too large, or moves too far, violates them. */
-START_TEST(wrong_answers_violate_the_bounds) {
-  contact_case c = case_any(2, 5, 0.05, 0, 61);
+TEST(wrong_answers_violate_the_bounds) {
+  CONTACT_CASE c = case_any(2, 5, 0.05, 0, 61);
   looker l;
   look_at(&l, &c, 0.05);
   for (int i = 0; i < 5; ++i) c.ut0[i] = 0.0;
@@ -334,16 +320,14 @@ START_TEST(wrong_answers_violate_the_bounds) {
   ck_assert_int_eq(look(&l)->total.violated, 1);
   ck_assert_int_eq(l.rep.violated, 1);
   look_away(&l);
-  case_free(&c);
 }
-END_TEST
 
 /* ---- the inequality ----------------------------------------------------- */
 
-START_TEST(inequality_tells_wrong_states) {
+TEST(inequality_tells_wrong_states) {
   for (int k = 0; k < 20; ++k) {
     int dim = 2 + k % 2, fields;
-    contact_case c =
+    CONTACT_CASE c =
         case_any(dim, 1 + k % 7, 0.4, k / 2 % 2, 6300ull + (unsigned)k);
     double least, size = 0.0;
     solve(&c);
@@ -362,26 +346,22 @@ START_TEST(inequality_tells_wrong_states) {
         ck_assert_msg(least < -1e-10, "case %d unknown %d %+d: %g", k, i, way,
                       least);
       }
-    case_free(&c);
   }
 }
-END_TEST
 
-START_TEST(inequality_of_no_number_is_not_met) {
-  contact_case c = case_any(2, 3, 0.4, 0, 5);
+TEST(inequality_of_no_number_is_not_met) {
+  CONTACT_CASE c = case_any(2, 3, 0.4, 0, 5);
   double least;
   int fields;
   solve(&c);
   c.u[2] = NAN;
   ck_assert_int_eq(inequality_least(&c.cp, c.u, &least, &fields), OK);
   ck_assert(!(least >= -1.0));
-  case_free(&c);
 }
-END_TEST
 
 /* A body that nothing loads is pushed out of its obstacle: forces that are
  * rounding of its motion tell nothing, others do. */
-START_TEST(inequality_of_rounding_alone_is_met) {
+TEST(inequality_of_rounding_alone_is_met) {
   double A[16] = {1e3, 0, -1e3, 0, 0, 1e3, 0, 0, -1e3, 0, 1e3, 0, 0, 0, 0, 1e3};
   double f[4] = {1e-17, 0, 4e-18, 0}, u[4] = {-5e-5, 0, -5e-5, 0};
   double gap[2] = {-5e-5, 1e-2}, least;
@@ -394,14 +374,13 @@ START_TEST(inequality_of_rounding_alone_is_met) {
   ck_assert_int_eq(inequality_least(&cp, u, &least, &fields), OK);
   ck_assert_double_lt(least, -1e-3);
 }
-END_TEST
 
 /* ---- parts -------------------------------------------------------------- */
 
 /* A problem with its limit frozen has the same limit and the same solution. */
-START_TEST(frozen_problems_have_the_same_solution) {
+TEST(frozen_problems_have_the_same_solution) {
   for (int k = 0; k < 10; ++k) {
-    contact_case c = case_any(2 + k % 2, 6, 0.4, 0, 7400ull + (unsigned)k);
+    CONTACT_CASE c = case_any(2 + k % 2, 6, 0.4, 0, 7400ull + (unsigned)k);
     unsigned char keep[6] = {1, 0, 1, 1, 0, 0}, given[6] = {0, 1, 0, 1, 0, 0};
     double least;
     int fields;
@@ -421,13 +400,11 @@ START_TEST(frozen_problems_have_the_same_solution) {
       ck_assert_int_eq(inequality_least(&p.cp, c.u, &least, &fields), OK);
       ck_assert_double_ge(least, -1e-11);
     }
-    case_free(&c);
   }
 }
-END_TEST
 
 /* A block on its floor: u_t has no energy-free part, loads have no norm. */
-START_TEST(block_held_by_contact_has_a_limit_and_no_bounds) {
+TEST(block_held_by_contact_has_a_limit_and_no_bounds) {
   case_block_data d = {.columns = 4,
                        .layers = 4,
                        .symmetric = 1,
@@ -453,10 +430,9 @@ START_TEST(block_held_by_contact_has_a_limit_and_no_bounds) {
   look_away(&l);
   case_free(&c);
 }
-END_TEST
 
-START_TEST(refused_memory_is_told_and_returned) {
-  contact_case c = case_any(3, 4, 0.2, 0, 8);
+TEST(refused_memory_is_told_and_returned) {
+  CONTACT_CASE c = case_any(3, 4, 0.2, 0, 8);
   solve(&c);
   size_t before = memory_in_use();
   for (int k = 1;; ++k) {
@@ -473,19 +449,6 @@ START_TEST(refused_memory_is_told_and_returned) {
     }
     ck_assert_int_eq(st, ERR_MEMORY);
   }
-  case_free(&c);
 }
-END_TEST
 
-UNIT_MAIN("theory", largest_eigenvalues_are_those_of_closed_forms,
-          triangle_has_its_constants,
-          above_the_critical_mu_it_does_not_contract,
-          factor_bounds_what_friction_can_do, factor_is_that_of_the_matrices,
-          tangent_counts_given_limits_if_told,
-          bounds_hold_under_the_guaranteed_limit,
-          wrong_answers_violate_the_bounds, inequality_tells_wrong_states,
-          inequality_of_no_number_is_not_met,
-          inequality_of_rounding_alone_is_met,
-          frozen_problems_have_the_same_solution,
-          block_held_by_contact_has_a_limit_and_no_bounds,
-          refused_memory_is_told_and_returned)
+UNIT_MAIN("theory")

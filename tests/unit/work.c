@@ -3,7 +3,6 @@
  * expected from the number of unknowns besides those that CHOLMOD counts for
  * blocks in the plane and in space, the contact last.
  */
-#include "base/base.h"
 #include "effects/plan/plan.h"
 #include "fem/fem.h"
 #include "support/pressed_block.h"
@@ -17,7 +16,7 @@ static const struct {
               {2, 257, 64, 0}, {3, 81, 8, 0},  {3, 169, 12, 0},
               {3, 361, 18, 1}, {3, 625, 12, 1}};
 
-START_TEST(factor_has_the_size_that_was_expected) {
+TEST(factor_has_the_size_that_was_expected) {
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k) {
     if (blocks[k].is_large && !unit_whole()) continue;
     pressed_block b;
@@ -35,7 +34,6 @@ START_TEST(factor_has_the_size_that_was_expected) {
     pressed_block_free(&b);
   }
 }
-END_TEST
 
 static void request(stage s, size_t n) {
   timer_enter(s);
@@ -44,7 +42,7 @@ static void request(stage s, size_t n) {
 }
 
 /* Two stages of a row, the first entered twice. */
-START_TEST(cost_of_a_row_is_that_of_its_stages) {
+TEST(cost_of_a_row_is_that_of_its_stages) {
   const plan_row row = {.n_stage = 2, .stages = {STAGE_LOAD, STAGE_BODY}};
   timer_reset();
   request(STAGE_LOAD, 3000);
@@ -57,7 +55,6 @@ START_TEST(cost_of_a_row_is_that_of_its_stages) {
   ck_assert_uint_eq(c.bytes, 4500);
   ck_assert_double_eq(c.cpu, one.cpu + two.cpu);
 }
-END_TEST
 
 #define CARDS                                                         \
   "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"   \
@@ -74,7 +71,7 @@ END_TEST
 
 /* Sixteen times the elements: of each row more operations, of one that works
  * on all nodes or elements in proportion, but for files. */
-START_TEST(work_grows_with_the_mesh) {
+TEST(work_grows_with_the_mesh) {
   enum { FINE = 4 };
   text_model s[2];
   effect_plan *p[2];
@@ -104,7 +101,5 @@ START_TEST(work_grows_with_the_mesh) {
     text_model_close(&s[k]);
   }
 }
-END_TEST
 
-UNIT_MAIN("work", work_grows_with_the_mesh, cost_of_a_row_is_that_of_its_stages,
-          factor_has_the_size_that_was_expected)
+UNIT_MAIN("work")

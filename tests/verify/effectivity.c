@@ -13,7 +13,6 @@
  *   solid    u = a (sin x cos y cos z, ...)
  *   layers   sigma_yy = -10 cos y, E = 1000 below y = 1/2, 4000 above
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -77,19 +76,17 @@ static void report(const char *name, int n, const job *j) {
   ck_assert_msg(ratio > 0.7 && ratio < 1.5, "%s: effectivity %g", name, ratio);
 }
 
-START_TEST(head) {
+TEST(head) {
   printf("%-14s %4s %10s %12s %12s %12s\n", "error of mesh", "N", "unknowns",
          "true[%]", "estimate[%]", "effectivity");
   fflush(stdout);
 }
-END_TEST
 
-START_TEST(manufactured) {
+TESTS(manufactured, sizeof problems / sizeof *problems) {
   const problem *p = &problems[_i];
   for (int k = 0; k < 2; ++k) {
-    char path[80];
-    job j = job_begin("verify");
-    snprintf(path, sizeof path, "tests/regression/mesh/%s", p->mesh);
+    JOB j = job_begin("verify");
+    PRINTED(path, "tests/regression/mesh/%s", p->mesh);
     job_copy(&j, path);
     job_write(&j, "verify.inp",
               "*PARAMETER\nN = %d\nE = 1000.\nA = -0.01\n"
@@ -102,56 +99,39 @@ START_TEST(manufactured) {
     int code = job_run(&j, "");
     ck_assert_msg(code == 0, "%s: exit %d: %s", p->name, code, j.errors);
     report(p->name, p->n[k], &j);
-    job_end(&j);
   }
 }
-END_TEST
 
-START_TEST(interface) {
+TEST(interface) {
   for (int n = 8; n <= 16; n *= 2) {
-    job j = job_begin("verify");
-    job_copy(&j, "tests/regression/mesh/layers.geo");
-    job_write(&j, "verify.inp",
-              "*PARAMETER\nN = %d\n*MESH, FILE=layers.geo\n"
-              "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
-              "*MATERIAL, NAME=K\n*ELASTIC\n4000., 0.\n"
-              "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
-              "*SOLID SECTION, ELSET=HARD, MATERIAL=K\n"
-              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n*REFERENCE\n"
-              "stress_xx, 0\nstress_yy, \"-10*cos(y)\"\nstress_zz, 0\n"
-              "stress_xy, 0\npressure, 10\n*STEP\n*STATIC\n*BOUNDARY\n"
-              "LEFT, 1\n*DSLOAD\nTOP, TY, \"-10*cos(1)\"\n"
-              "*DLOAD\nSOFT, BY, \"-10*sin(y)\"\nHARD, BY, \"-10*sin(y)\"\n"
-              "*ACCURACY, MESH=YES\n*END STEP\n",
-              n);
-    int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    JOB j =
+        job_with("verify", "tests/regression/mesh/layers.geo",
+                 "*PARAMETER\nN = %d\n*MESH, FILE=layers.geo\n"
+                 "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+                 "*MATERIAL, NAME=K\n*ELASTIC\n4000., 0.\n"
+                 "*SOLID SECTION, ELSET=SOFT, MATERIAL=M\n"
+                 "*SOLID SECTION, ELSET=HARD, MATERIAL=K\n"
+                 "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+                 "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n*REFERENCE\n"
+                 "stress_xx, 0\nstress_yy, \"-10*cos(y)\"\nstress_zz, 0\n"
+                 "stress_xy, 0\npressure, 10\n*STEP\n*STATIC\n*BOUNDARY\n"
+                 "LEFT, 1\n*DSLOAD\nTOP, TY, \"-10*cos(1)\"\n"
+                 "*DLOAD\nSOFT, BY, \"-10*sin(y)\"\nHARD, BY, \"-10*sin(y)\"\n"
+                 "*ACCURACY, MESH=YES\n*END STEP\n",
+                 n);
+    CK_EXIT(job_run(&j, ""), 0, j);
     report("interface", n, &j);
-    job_end(&j);
   }
 }
-END_TEST
 
-START_TEST(contact_edge) {
+TEST(contact_edge) {
   for (int n = 8; n <= 16; n *= 2) {
-    char words[40];
-    job j = job_begin("hertz");
-    snprintf(words, sizeof words, "-D N=%d", n);
+    JOB j = job_begin("hertz");
+    PRINTED(words, "-D N=%d", n);
     ck_assert_int_eq(job_run_deck(&j, "input/hertz_line/hertz_exact", words),
                      0);
     report("contact edge", n, &j);
-    job_end(&j);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *t = tcase_create("effectivity");
-  tcase_set_timeout(t, 300);
-  tcase_add_test(t, head);
-  tcase_add_loop_test(t, manufactured, 0, sizeof problems / sizeof *problems);
-  tcase_add_test(t, interface);
-  tcase_add_test(t, contact_edge);
-  return unit_run("effectivity", t);
-}
+UNIT_MAIN_FOR("effectivity", 300)

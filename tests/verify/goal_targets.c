@@ -3,14 +3,13 @@
  * to 1 %, and the unknowns of meshes for a goal beside those of meshes for the
  * energy norm, both with the same |error| + band.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 /* The deck of an example with some text replaced. */
 static job run_deck(const char *deck, const char *old, const char *by,
                     const char *in_step, const char *words) {
-  char *text = job_deck_text(deck);
+  FREED char *text = job_deck_text(deck);
   job j = job_begin("goals");
   job_copy_meshes(&j, deck);
   char *at = strstr(text, old), *end = strstr(text, "*END STEP");
@@ -18,28 +17,22 @@ static job run_deck(const char *deck, const char *old, const char *by,
   const char *rest = at + strlen(old);
   job_write(&j, "goals.inp", "%.*s%s%.*s%s%s", (int)(at - text), text, by,
             (int)(end - rest), rest, in_step, end);
-  free(text);
-  const int code = job_run(&j, words);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, words), 0, j);
   return j;
 }
 
-START_TEST(peak_of_the_sphere_to_one_percent) {
-  job j = run_deck("input/hertz_sphere/hertz_sphere_3d", "*STEP",
+TEST(peak_of_the_sphere_to_one_percent) {
+  JOB j = run_deck("input/hertz_sphere/hertz_sphere_3d", "*STEP",
                    "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=POLE, "
                    "TARGET=1 %\n*STEP",
                    "*ACCURACY, MAX_CPU=60\n*PRINT, GOALS\n", "-D NC=2");
-  dat t = job_table(&j, "GOALS", -1);
-  const double error = dat_at(&t, 0, "value") / 4688.3 - 1.0;
+  const double error = job_value(&j, "GOALS", -1, "value") / 4688.3 - 1.0;
   printf(
       "\nsphere in space, TARGET=1 %%: true error %.2g %%, %.0f unknowns, "
       "%.3g s\n",
       100 * error, job_told(&j, "unknowns"), job_told(&j, "cpu"));
   ck_assert_double_lt(fabs(error), 0.01);
-  dat_free(&t);
-  job_end(&j);
 }
-END_TEST
 
 static double off_of(const job *j, int row) {
   dat t = job_table(j, "GOALS", -1);
@@ -50,27 +43,22 @@ static double off_of(const job *j, int row) {
 
 static const char *const goals[] = {"PEAK", "WIDE", "TOP", "SIDE"};
 
-START_TEST(meshes_for_a_goal_are_smaller) {
+TEST(meshes_for_a_goal_are_smaller) {
   static const char deck[] = "input/hertz_line/hertz_goals";
-  job e = run_deck(deck, "*STEP", "*STEP", "*ACCURACY, TARGET=1\n", "-D N=4");
+  JOB e = run_deck(deck, "*STEP", "*STEP", "*ACCURACY, TARGET=1\n", "-D N=4");
   const double norm = job_told(&e, "unknowns");
   double product = 1.0;
   printf("half plane: %.0f unknowns of TARGET=1 in the energy norm\n", norm);
   for (int k = 0; k < 4; ++k) {
-    char old[40], by[80];
-    snprintf(old, sizeof old, "NAME=%s,", goals[k]);
-    snprintf(by, sizeof by, "%s TARGET=%.9g,", old, off_of(&e, k));
-    job j = run_deck(deck, old, by, "", "-D N=4");
+    PRINTED(old, "NAME=%s,", goals[k]);
+    PRINTED(by, "%s TARGET=%.9g,", old, off_of(&e, k));
+    JOB j = run_deck(deck, old, by, "", "-D N=4");
     const double own = job_told(&j, "unknowns");
     printf("  %-5s %8.0f unknowns for the same |error| + band: 1/%.2f\n",
            goals[k], own, norm / own);
     product *= norm / own;
-    job_end(&j);
   }
   ck_assert_double_gt(sqrt(sqrt(product)), 2.0);
-  job_end(&e);
 }
-END_TEST
 
-UNIT_MAIN("goal_targets", peak_of_the_sphere_to_one_percent,
-          meshes_for_a_goal_are_smaller)
+UNIT_MAIN("goal_targets")

@@ -14,7 +14,6 @@
  * the truth in the band in 9 of 10. An estimate above its own band has the
  * right sign in every row.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -229,19 +228,17 @@ static int write_own(const scene *s, job *j) {
   if (crack) job_copy(j, "input/crack/crack.geo");
   job_copy(j, "input/greco/greco.geo");
   job_write(j, "goals.geo", TUBE_GEO);
-  char *text = aimed(crack ? s->cards : tube ? TUBE : FRO, each(s));
+  FREED char *text = aimed(crack ? s->cards : tube ? TUBE : FRO, each(s));
   char *end = strstr(text, "\n*END STEP");
   *end = '\0';
   job_write(j, "goals.inp", "%s\n*PRINT, GOALS\n*END STEP\n", text);
-  free(text);
   return 1;
 }
 
 static job run_words(const scene *s, int n, job j) {
   char words[60] = "";
   if (n > 0) snprintf(words, sizeof words, "-D %s=%d", s->parameter, n);
-  const int code = job_run(&j, words);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  CK_EXIT(job_run(&j, words), 0, j);
   return j;
 }
 
@@ -251,7 +248,7 @@ static job run_scene(const scene *s, int n) {
   const int block = strcmp(s->deck, "block") == 0;
   job j = job_begin("goals");
   if (write_own(s, &j)) return run_words(s, n, j);
-  char *text = block ? block_text() : job_deck_text(s->deck);
+  FREED char *text = block ? block_text() : job_deck_text(s->deck);
   job_copy_meshes(&j, block ? "input/greco/greco_static" : s->deck);
   char *at = strstr(text, "\n*STEP"), *end = strstr(text, "\n*END STEP");
   for (char *next = end; next != NULL; next = strstr(end + 1, "\n*END STEP"))
@@ -259,13 +256,11 @@ static job run_scene(const scene *s, int n) {
   char *old = strstr(text, "*ACCURACY, MESH=YES");
   ck_assert(at != NULL && end != NULL);
   if (old != NULL) memcpy(old, "**                 ", 19);
-  char *cards = aimed(s->cards, each(s));
+  FREED char *cards = aimed(s->cards, each(s));
   const int norm = s->target[0] != '\0' && each(s) == NULL;
   job_write(&j, "goals.inp", "%.*s\n%s%.*s\n%s%s\n*PRINT, GOALS%s",
             (int)(at - text), text, cards, (int)(end - at - 1), at + 1,
             norm ? "*ACCURACY, " : "**", s->target, end);
-  free(text);
-  free(cards);
   return run_words(s, n, j);
 }
 
@@ -287,7 +282,7 @@ static int is_adapted(const scene *s) {
 
 static void report(const scene *s, int n, const job *j, int goal) {
   char wanted[80], *json = job_file(j, "json"), *at;
-  dat t = job_table(j, "GOALS", -1);
+  DAT t = job_table(j, "GOALS", -1);
   const double value = dat_at(&t, goal, "value"), exact = s->exact[goal];
   const double told = dat_at(&t, goal, "error"), is = exact - value;
   const double band = dat_at(&t, goal, "band");
@@ -307,7 +302,6 @@ static void report(const scene *s, int n, const job *j, int goal) {
                     is_adapted(s) && ends<3.0, trusted, fabs(told)> band};
   for (int k = 0; k < KINDS; ++k)
     if (of[k]) add(k, is, told, band);
-  dat_free(&t);
   free(json);
 }
 
@@ -323,17 +317,16 @@ static void summarise(void) {
   }
 }
 
-START_TEST(estimates_of_goals_are_near_the_errors) {
+TEST(estimates_of_goals_are_near_the_errors) {
   printf("\ngoals: relative to the exact value; ratio: estimate over error\n");
   printf("%-14s %-17s %4s %8s %-5s %10s %10s %7s %9s %5s\n", "scene", "mesh",
          "n", "unknowns", "goal", "error", "estimate", "ratio", "band",
          "ends%");
   for (size_t k = 0; k < sizeof scenes / sizeof *scenes; ++k)
     for (int i = 0; i < 4 && (i == 0 || scenes[k].n[i] > 0); ++i) {
-      job j = run_scene(&scenes[k], scenes[k].n[i]);
+      JOB j = run_scene(&scenes[k], scenes[k].n[i]);
       for (int g = 0; g < GOALS && scenes[k].name[g] != NULL; ++g)
         report(&scenes[k], scenes[k].n[i], &j, g);
-      job_end(&j);
     }
   summarise();
   ck_assert_int_ge(5 * sums[ALL].banded, 4 * sums[ALL].all);
@@ -347,6 +340,5 @@ START_TEST(estimates_of_goals_are_near_the_errors) {
   ck_assert_int_ge(sums[SIGNED].all, 50);
   ck_assert_int_eq(sums[SIGNED].sign, sums[SIGNED].all);
 }
-END_TEST
 
-UNIT_MAIN("goals", estimates_of_goals_are_near_the_errors)
+UNIT_MAIN("goals")

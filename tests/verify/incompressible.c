@@ -7,7 +7,6 @@
  *     against a program of quadratic displacements and linear pressures
  *   a half plane pressed against a parabola (Hertz), with contact
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -43,7 +42,6 @@ static void report(const char *what, const char *nu, int averaged,
 static job run_mesh(const char *geo, const char *deck, int coarsest, int k,
                     const char *nu, int averaged) {
   job j = job_begin("verify");
-  char words[80];
   job_write(&j, "body.geo",
             "DefineConstant[ N = 8 ];\nMesh.MeshSizeMin = 1/N;\n"
             "Mesh.MeshSizeMax = 1/N;\n%s",
@@ -53,9 +51,8 @@ static job run_mesh(const char *geo, const char *deck, int coarsest, int k,
             "*MATERIAL, NAME=M\n*ELASTIC\n1., <NU>\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, FORMULATION=%s\n%s",
             form[averaged], deck);
-  snprintf(words, sizeof words, "-D N=%d -D NU=%s", coarsest << k, nu);
-  int code = job_run(&j, words);
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  PRINTED(words, "-D N=%d -D NU=%s", coarsest << k, nu);
+  CK_EXIT(job_run(&j, words), 0, j);
   return j;
 }
 
@@ -100,7 +97,7 @@ static void tube_errors(const job *j, double nu, double *u_error,
 static const char *const ratios[] = {"0.3", "0.49", "0.499", "0.4999",
                                      "0.49999"};
 
-START_TEST(tube) {
+TEST(tube) {
   for (int i = 0; i < 5; ++i)
     for (int averaged = 0; averaged < 2; ++averaged) {
       double u[MESHES], p[MESHES];
@@ -113,7 +110,6 @@ START_TEST(tube) {
       report("tube, mean stress", ratios[i], averaged, p, 1);
     }
 }
-END_TEST
 
 /* ---- Cook's membrane ---------------------------------------------------- */
 
@@ -131,7 +127,7 @@ static const char cook_deck[] =
  * meshes graded to the upper left corner, the last change 3e-4. */
 static const double cook_4999 = 18.567;
 
-START_TEST(cook) {
+TEST(cook) {
   for (int averaged = 0; averaged < 2; ++averaged) {
     double error[MESHES];
     for (int k = 0; k < MESHES; ++k) {
@@ -144,7 +140,6 @@ START_TEST(cook) {
     report("Cook, mean u_y", "0.4999", averaged, error, 1);
   }
 }
-END_TEST
 
 /* ---- Hertz --------------------------------------------------------------- */
 
@@ -175,36 +170,26 @@ static double hertz_error(const job *j, double nu) {
   return sqrt(square / n);
 }
 
-START_TEST(hertz) {
+TEST(hertz) {
   for (int i = 0; i < 5; i += 3)
     for (int averaged = 0; averaged < 2; ++averaged) {
       double error[MESHES];
       for (int k = 0; k < MESHES; ++k) {
-        char words[80];
         int n = 8 << k;
-        job j = job_begin("verify");
-        job_copy(&j, "input/hertz_line/hertz_block.geo");
-        job_write(&j, "verify.inp", hertz_deck, form[averaged]);
-        snprintf(words, sizeof words, "-D NU=%s -D NC=%d -D GROWTH=%g",
-                 ratios[i], n, 2.0 / n);
-        int code = job_run(&j, words);
-        ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+        job j = job_with("verify", "input/hertz_line/hertz_block.geo",
+                         hertz_deck, form[averaged]);
+        PRINTED(words, "-D NU=%s -D NC=%d -D GROWTH=%g", ratios[i], n, 2.0 / n);
+        CK_EXIT(job_run(&j, words), 0, j);
         error[k] = hertz_error(&j, atof(ratios[i]));
         job_end(&j);
       }
       report("Hertz, pressure", ratios[i], averaged, error, 1);
     }
 }
-END_TEST
 
 int main(void) {
-  TCase *tests = tcase_create("incompressible");
   printf("%-22s %-8s %-9s %-43s  order  expected\n", "error of", "nu", "form",
          " on four meshes");
   fflush(stdout);
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_test(tests, tube);
-  tcase_add_test(tests, cook);
-  tcase_add_test(tests, hertz);
-  return unit_run("incompressible", tests);
+  return unit_run("incompressible", UNIT_SECONDS);
 }

@@ -11,7 +11,6 @@
  * reason: there it is the slope of the errors over four octaves of n, for it
  * depends on where in its increment a kink falls.
  */
-#include "base/base.h"
 #include "material/scheme/scheme.h"
 #include "support/creep_case.h"
 #include "support/law_case.h"
@@ -146,10 +145,10 @@ static const creep_case block = {.elastic = "1.E5, 0.3",
 
 static void show_law(law_case *l, const char *section) {
   const law_ops *ops = l->card.ops;
-  char law[400], name[100], words[80];
+  char words[80];
   words_of(&l->card, words, sizeof words);
-  snprintf(name, sizeof name, "%s%s", ops->name, words);
-  snprintf(law, sizeof law, "*INELASTIC, LAW=%s\n%s\n", name, ops->example);
+  PRINTED(name, "%s%s", ops->name, words);
+  PRINTED(law, "*INELASTIC, LAW=%s\n%s\n", name, ops->example);
   creep_case c = block;
   c.law = law;
   c.section = section;
@@ -160,7 +159,7 @@ static void show_law(law_case *l, const char *section) {
   show_smooth(name, &c, ops->linear);
 }
 
-START_TEST(head) {
+TEST(head) {
   printf("order of                             ");
   for (int i = 0; i < N_ROW; ++i) printf(" %6s", rows[i].shown);
   printf("\nexpected                             ");
@@ -168,9 +167,8 @@ START_TEST(head) {
   printf("\n");
   fflush(stdout);
 }
-END_TEST
 
-START_TEST(every_law_in_every_section) {
+TEST(every_law_in_every_section) {
   static const char *const section[] = {"CPE3", "CPS3", "CAX3", "C3D4"};
   static law_case l;
   for (int s = 0; s < 4; ++s)
@@ -183,11 +181,10 @@ START_TEST(every_law_in_every_section) {
       }
   ck_assert_msg(wrong == 0, "%d laws are not within 0.1", wrong);
 }
-END_TEST
 
 #define HEATED "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 20.\n"
 
-START_TEST(coefficients_that_vary) {
+TEST(coefficients_that_vary) {
   creep_case c = block;
   c.law = "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n\"2 + sin(3*t)\"\n";
   show_smooth("MAXWELL, tau = 2 + sin(3 t)", &c, 0);
@@ -204,9 +201,8 @@ START_TEST(coefficients_that_vary) {
   show_smooth("NORTON, E(T), A(T), n(T), heated", &c, 0);
   ck_assert_msg(wrong == 0, "%d laws are not within 0.1", wrong);
 }
-END_TEST
 
-START_TEST(where_there_is_less_to_show) {
+TEST(where_there_is_less_to_show) {
   creep_case c = block;
   printf("EXPONENTIAL is for linear laws with constant coefficients (-)\n");
   c.law = "*INELASTIC, LAW=BINGHAM\n100., 1.E4\n";
@@ -236,7 +232,5 @@ START_TEST(where_there_is_less_to_show) {
                "friction is along the slip of the increment, not of its end");
   ck_assert_msg(wrong == 0, "%d cases are not within 0.3", wrong);
 }
-END_TEST
 
-UNIT_MAIN("integrators", head, every_law_in_every_section,
-          coefficients_that_vary, where_there_is_less_to_show)
+UNIT_MAIN("integrators")

@@ -13,7 +13,6 @@
  * ends: 3/2 or more for the displacement of the surface, 1 for the tractions at
  * its nodes, the ends of the zones and the dissipation.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -40,11 +39,9 @@ static series run_series(const char *name, const char *deck, double nu,
   s.a = sqrt(4 * load * radius * (1 - nu * nu) / (pi * young));
   s.p0 = 2 * load / (pi * s.a);
   for (int k = 0; k < RUNS; ++k) {
-    char all[200];
     int n = COARSEST << k / WIDTHS;
-    snprintf(all, sizeof all,
-             "%s -D SIZE=100 -D NU=%g -D A=%.17g -D NC=%d -D GROWTH=%.6g",
-             words, nu, part * s.a * widths[k % WIDTHS], n, 5.0 / n);
+    PRINTED(all, "%s -D SIZE=100 -D NU=%g -D A=%.17g -D NC=%d -D GROWTH=%.6g",
+            words, nu, part * s.a * widths[k % WIDTHS], n, 5.0 / n);
     s.j[k] = job_begin("verify");
     int code = job_run_deck(&s.j[k], deck, all);
     ck_assert_msg(code == 0, "%s: exit %d: %s", deck, code, s.j[k].errors);
@@ -163,7 +160,7 @@ static double hertz_u(const series *s, double x) {
          (y * sqrt(1 - y * y) + asin(y));
 }
 
-START_TEST(hertz) {
+TEST(hertz) {
   double e[MESHES];
   series s = run_series("Hertz", "input/spence/spence", 0.3, 1, "-D MU=0");
   field_errors(&s, "u_t", 0.999, hertz_u, fabs(hertz_u(&s, s.a)), e);
@@ -174,10 +171,9 @@ START_TEST(hertz) {
   report(&s, "end of the contact", MESHES, e, 1);
   free_series(&s);
 }
-END_TEST
 
 /* nu = 0.3, mu = 0.2: c/a = 0.360385, P over that of Hertz 1.0355. */
-START_TEST(spence) {
+TEST(spence) {
   double e[MESHES], square[RUNS], part = 1 / sqrt(1.0355);
   series s = run_series("Spence", "input/spence/spence", 0.3, part, "");
   double a = part * s.a;
@@ -198,7 +194,6 @@ START_TEST(spence) {
   report(&s, "dissipation (change)", MESHES - 1, e, 1);
   free_series(&s);
 }
-END_TEST
 
 /* Q = 3/4 mu P: c = a/2, heat of a cycle 0.155559836 (mu P)^2 over E*. */
 static const double mu = 0.3, stick = 0.5, heat = 0.155559836;
@@ -229,7 +224,7 @@ static void take_press_off(series *s) {
   }
 }
 
-START_TEST(mindlin) {
+TEST(mindlin) {
   double e[MESHES], square[RUNS];
   series s = run_series("Mindlin", "input/mindlin_loop/mindlin_loop", 0.3, 1,
                         "-D DT=0.25 -D SHARE=0.75");
@@ -249,19 +244,16 @@ START_TEST(mindlin) {
   report(&s, "dissipation", MESHES, e, 1);
   free_series(&s);
 }
-END_TEST
 
 /* The table goes first; check prints its own line after it. */
-START_TEST(head) {
+TEST(head) {
   printf("%-9s %-22s", "case", "relative error of");
   for (int k = 0; k < MESHES; ++k) {
-    char text[24];
-    snprintf(text, sizeof text, "h = a/%d", COARSEST << k);
+    PRINTED(text, "h = a/%d", COARSEST << k);
     printf(" %9s", text);
   }
   printf("  order  expected\n");
   fflush(stdout);
 }
-END_TEST
 
-UNIT_MAIN("orders", head, hertz, spence, mindlin)
+UNIT_MAIN("orders")

@@ -11,7 +11,6 @@
  * their ratios, 1.5 at most beside brute force, 2 beside the forecast; small
  * meshes, whose time is that of starting gmsh, are shown too.
  */
-#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -42,18 +41,16 @@ static const example shear = {"block_shear_3d", "block_shear_3d", 0, 0};
 /* The deck with another *ACCURACY (NULL: as it is) in each step. */
 static int run(job *j, const example *e, const char *accuracy,
                const char *words) {
-  char path[160], card[160] = "";
-  snprintf(path, sizeof path, "input/%s/%s", e->folder, e->name);
-  if (accuracy != NULL) snprintf(card, sizeof card, "%s\n", accuracy);
+  PRINTED(path, "input/%s/%s", e->folder, e->name);
+  PRINTED(card, "%s%s", accuracy != NULL ? accuracy : "",
+          accuracy != NULL ? "\n" : "");
   return job_run_with(j, path, card, accuracy != NULL, words);
 }
 
 /* %, of the energy norm. */
 static double true_error(const job *j, const example *e) {
   if (!e->energy) return job_told(j, "true_error_percent");
-  dat d = job_table(j, "ENERGY", -1);
-  double energy = dat_at(&d, 0, "strain_energy");
-  dat_free(&d);
+  double energy = job_value(j, "ENERGY", -1, "strain_energy");
   return 100 * sqrt(fabs(1 - energy / greco_energy));
 }
 
@@ -69,14 +66,12 @@ static const char *const lengths[] = {"", "-D DT=1"};
 
 /* One run; its CPU if the true error is below the target, else HUGE_VAL. */
 static double try_choice(const example *e, double target, const choice *c) {
-  char words[60], card[80];
-  job j;
-  snprintf(words, sizeof words, "-D N=%d %s", c->n, c->dt);
-  snprintf(card, sizeof card, "*ACCURACY, SOLVER=NO%s%s",
-           c->tol[0] != '\0' ? "\n*SOLVER, TOL=" : "", c->tol);
+  JOB j;
+  PRINTED(words, "-D N=%d %s", c->n, c->dt);
+  PRINTED(card, "*ACCURACY, SOLVER=NO%s%s",
+          c->tol[0] != '\0' ? "\n*SOLVER, TOL=" : "", c->tol);
   ck_assert_int_eq(run(&j, e, card, words), 0);
   double error = true_error(&j, e), cpu = cpu_of(&j);
-  job_end(&j);
   return error <= target ? cpu : HUGE_VAL;
 }
 
@@ -99,12 +94,10 @@ static choice brute_force(const example *e, double target, int from) {
 }
 
 static void check_target(const example *e, double target, int from) {
-  char card[60];
-  job j;
-  snprintf(card, sizeof card, "*ACCURACY, TARGET=%g", target);
+  JOB j;
+  PRINTED(card, "*ACCURACY, TARGET=%g", target);
   ck_assert_int_eq(run(&j, e, card, ""), 0);
   double error = true_error(&j, e), cpu = cpu_of(&j);
-  job_end(&j);
   choice c = brute_force(e, target, from);
   printf("%-16s %9g %9.3f %9.2f %9d %8s %8s %8.2f %7.2f\n", e->name, target,
          error, cpu, c.n, c.dt[0] != '\0' ? c.dt + 6 : "deck's",
@@ -113,7 +106,7 @@ static void check_target(const example *e, double target, int from) {
   ck_assert_msg(error <= target, "%s: true error %g", e->name, error);
 }
 
-START_TEST(targets) {
+TEST(targets) {
   printf("%-16s %9s %9s %9s %9s %8s %8s %8s %7s\n", "TARGET=", "wanted[%]",
          "true[%]", "cpu[s]", "uniform N", "DT", "TOL", "cpu[s]", "ratio");
   check_target(&greco, 1, 54);
@@ -121,7 +114,6 @@ START_TEST(targets) {
   check_target(&hertz, 1, 42);
   check_target(&hertz, 0.3, 150);
 }
-END_TEST
 
 /* Unknowns, CPU seconds and MB expected for an error in %; 0: no such row. */
 static int expected(const job *j, double level, double row[3]) {
@@ -138,14 +130,13 @@ static int expected(const job *j, double level, double row[3]) {
 }
 
 static void check_forecast(const example *e, const double *levels, int n) {
-  job plan;
+  JOB plan;
   ck_assert_int_eq(run(&plan, e, NULL, "--estimate-cost"), 0);
   for (int i = 0; i < n; ++i) {
     double row[3];
-    char card[60];
-    job j;
+    JOB j;
     ck_assert(expected(&plan, levels[i], row));
-    snprintf(card, sizeof card, "*ACCURACY, TARGET=%g", levels[i]);
+    PRINTED(card, "*ACCURACY, TARGET=%g", levels[i]);
     ck_assert_int_eq(run(&j, e, card, ""), 0);
     double cpu = cpu_of(&j), unknowns = job_unknowns(&j);
     double bytes = job_told(&j, "peak_bytes") / 1048576;
@@ -155,12 +146,10 @@ static void check_forecast(const example *e, const double *levels, int n) {
     fflush(stdout);
     ck_assert_msg(unknowns < 2 * row[0] && row[0] < 2 * unknowns, "%s: %g",
                   e->name, unknowns);
-    job_end(&j);
   }
-  job_end(&plan);
 }
 
-START_TEST(forecasts) {
+TEST(forecasts) {
   static const double fine[] = {1, 0.3, 0.1}, coarse[] = {3, 1, 0.3},
                       solid[] = {10, 7};
   printf("%-16s %8s %9s %9s %8s %8s %9s %9s %7s %7s\n", "--estimate-cost",
@@ -171,12 +160,5 @@ START_TEST(forecasts) {
   check_forecast(&creep, fine, 3);
   check_forecast(&shear, solid, 2);
 }
-END_TEST
 
-int main(void) {
-  TCase *t = tcase_create("target");
-  tcase_set_timeout(t, 1800);
-  tcase_add_test(t, targets);
-  tcase_add_test(t, forecasts);
-  return unit_run("target", t);
-}
+UNIT_MAIN_FOR("target", 1800)

@@ -587,8 +587,7 @@ const effect_ops friction_effect = {
 /* clang-format on */
 
 /* Its hooks are those of friction. */
-/* clang-format off */
-const effect_ops slip_history_effect = {
-  .name = "history of slip", .bit = EFFECT_BIT_HISTORY,
-  .required = requires_history, .expected = expected_history};
-/* clang-format on */
+const effect_ops slip_history_effect = {.name = "history of slip",
+                                        .bit = EFFECT_BIT_HISTORY,
+                                        .required = requires_history,
+                                        .expected = expected_history};

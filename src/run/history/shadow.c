@@ -10,81 +10,61 @@
 struct shadow {
   run r;
   visco v;
+  int own_moduli; /* 1: those of r, and r.elastic */
 };
 
-enum { OWN = 16 };
-
-typedef struct own_array {
-  double **at;
-  size_t n;
-} own_array;
-
 /* Arrays that the copy changes and the run still needs. */
-static void list_own(run *b, own_array list[OWN]) {
+static status copy_arrays(run *b) {
   equilibrium *e = &b->now;
   const size_t n = b->nodes.n, n_c = b->nodes.n_c, dofs = b->n_dof;
   const size_t sides = n_c - n, elements = b->msh->n_elem;
   const size_t strains = strains_kept(b);
-  const own_array all[OWN] = {{&e->u, dofs},
-                              {&e->F, dofs},
-                              {&e->reaction, dofs},
-                              {&e->uc, n_c},
-                              {&e->rc, n_c},
-                              {&e->motion, n_c},
-                              {&e->thermal, strains},
-                              {&e->e0, strains},
-                              {&e->sigma, strains},
-                              {&b->problem.f, b->nodes.n_row},
-                              {&b->problem.f_load, b->nodes.n_row},
-                              {&b->problem.gap, n},
-                              {&b->problem.side_gap, sides},
-                              {&e->elastic, strains},
-                              {&b->loads.ud, dofs},
-                              {&e->temperature, elements}};
-  memcpy(list, all, sizeof all);
-}
-
-static status copy_arrays(run *b) {
-  own_array list[OWN];
-  const double *from[OWN];
-  list_own(b, list);
-  for (int i = 0; i < OWN; ++i) {
-    from[i] = *list[i].at;
-    *list[i].at = NULL;
-  }
-  for (int i = 0; i < OWN; ++i) {
-    if (from[i] == NULL) continue;
-    PASS_NEW(*list[i].at, list[i].n);
-    COPY(*list[i].at, from[i], list[i].n);
+  const struct {
+    double **at;
+    size_t n;
+  } own[] = {{&e->u, dofs},
+             {&e->F, dofs},
+             {&e->reaction, dofs},
+             {&e->uc, n_c},
+             {&e->rc, n_c},
+             {&e->motion, n_c},
+             {&e->thermal, strains},
+             {&e->e0, strains},
+             {&e->sigma, strains},
+             {&b->problem.f, b->nodes.n_row},
+             {&b->problem.f_load, b->nodes.n_row},
+             {&b->problem.gap, n},
+             {&b->problem.side_gap, sides},
+             {&e->elastic, strains},
+             {&b->loads.ud, dofs},
+             {&e->temperature, elements}};
+  for (size_t i = 0; i < sizeof own / sizeof *own; ++i) {
+    const double *from = *own[i].at;
+    if (from == NULL) continue;
+    PASS_NEW(*own[i].at, own[i].n);
+    COPY(*own[i].at, from, own[i].n);
   }
   return OK;
 }
 
 void shadow_leave(shadow **p) {
   shadow *b = *p;
-  own_array list[OWN];
   if (b == NULL) return;
-  list_own(&b->r, list);
-  for (int i = 0; i < OWN; ++i) memory_free(*list[i].at);
-  effects_release(&b->r);
-  if (b->r.body.moduli.n_own > 0) {
-    matrices_free(&b->r.elastic);
-    moduli_free(&b->r.body.moduli);
-  }
+  if (b->own_moduli) matrices_free(&b->r.elastic);
   if (b->r.problem.given != NULL) contact_solver_free(&b->r.elastic.solver);
   memory_free(b);
 }
 
 /* Moduli that follow the temperature, and their matrix, are the copy's own. */
-static status own_moduli(const run *r, run *b) {
+static status own_moduli(const run *r, shadow *s) {
+  run *b = &s->r;
   if (r->body.moduli.n_own == 0) return OK;
+  s->own_moduli = 1;
   b->c = NULL;
   b->body.stale = 1;
   b->elastic = (matrices){0};
   b->body.moduli = (moduli){0};
-  status st = moduli_new(r->m, r->msh, r->now.temperature, &b->body.moduli);
-  b->body.moduli.n_own = r->body.moduli.n_own; /* owned also after a failure */
-  PASS(st);
+  PASS(moduli_new(r->m, r->msh, r->now.temperature, &b->body.moduli));
   moduli_domain(&b->body.moduli, r->m, &b->body.d);
   return OK;
 }
@@ -98,7 +78,6 @@ static status own_points(const run *r, shadow *b) {
   for (int i = 0; i < SLOTS; ++i) v->slot[i] = (matrices){0};
   v->fresh = (matrices){0};
   b->r.strains.visco = v;
-  OWNS(b);
   PASS(flow_state_new(&v->x, &v->now));
   flow_state_copy(&v->x, &r->strains.visco->old, &v->now);
   return OK;
@@ -111,6 +90,7 @@ static status shadow_new(const run *r, shadow **out) {
   shadow *b = NULL;
   PASS_NEW(b, 1);
   *out = b;
+  OWNS(b);
   run *own = &b->r;
   *own = *r;
   own->course.shadow = 1;
@@ -122,10 +102,9 @@ static status shadow_new(const run *r, shadow **out) {
   own->course.note[0] = '\0';
   if (r->body.d.eigen != NULL) own->body.d.eigen = &own->strains.eigen;
   own->effects.n = 0;
-  own->body.moduli.n_own = 0; /* not owned yet */
   PASS(copy_arrays(own));
   PASS(own_points(r, b));
-  PASS(own_moduli(r, own));
+  PASS(own_moduli(r, b));
   return effects_copy(r, own);
 }
 

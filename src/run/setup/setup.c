@@ -9,11 +9,6 @@ static status new_equilibrium(const run *r, equilibrium *e) {
   return OK;
 }
 
-static void free_equilibrium(equilibrium *e) {
-  RELEASE(e->u, e->F, e->reaction, e->uc, e->rc, e->motion, e->temperature,
-          e->thermal, e->e0, e->elastic, e->sigma);
-}
-
 /* Clusters of the sections with FORMULATION=AVERAGED. Sections with variable
  * moduli are averaged like those that flow. */
 static status new_clusters(run *r) {
@@ -84,6 +79,8 @@ static status new_pairs(run *r) {
 }
 
 status run_new(run *r, const effect_ops *const *effects) {
+  PASS_NEW(r->owner, 0);
+  OWNS(r->owner);
   r->n_dof = (size_t)r->msh->dim * r->msh->n_node;
   r->solving.known_key = RUN_NO_KEY;
   r->body.d.mesh = r->msh;
@@ -120,13 +117,5 @@ void run_free(run *r) {
   run_free_surface(r);
   run_free_ties(r);
   memory_free(r->body.order.node);
-  effects_release(r);
-  free_equilibrium(&r->old);
-  free_equilibrium(&r->now);
-  visco_free(r->strains.visco);
-  moduli_free(&r->body.moduli);
-  RELEASE(r->strains.elem, r->strains.load, r->body.d.cluster, r->body.fixed,
-          r->faces.pairs, r->faces.node_fixed, r->faces.face_weight,
-          r->result.totals, r->result.torque, r->loads.ud, r->loads.start,
-          r->result.strain, r->result.stress);
+  memory_free(r->owner);
 }

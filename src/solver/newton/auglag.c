@@ -732,14 +732,8 @@ static status auglag_keep(void *work, archive *a) {
   return archive_bytes(a, "state", w->state, w->m);
 }
 
-/* clang-format off */
-const solver_ops auglag_solver = {
-  .name = "auglag",
-  .family = "multipliers",
-  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
-             SOLVES_FLOATING,
-  .param_size = sizeof(auglag), .work_size = sizeof(auglag_work),
-  .options = auglag_options, .setup = auglag_setup, .solve = auglag_solve,
-  .keep = auglag_keep
-};
-/* clang-format on */
+const solver_ops auglag_solver = {SOLVER_OF(auglag), .family = "multipliers",
+                                  .handles = SOLVES_TRESCA | SOLVES_COULOMB |
+                                             SOLVES_3D | NEEDS_STIFFNESS |
+                                             SOLVES_FLOATING,
+                                  .keep = auglag_keep};

@@ -344,14 +344,8 @@ static status newton_keep(void *work, archive *a) {
   return w->system == NULL ? OK : newton_system_keep(w->system, a);
 }
 
-/* clang-format off */
 const solver_ops newton_solver = {
-  .name = "newton",
-  .family = "Newton",
-  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
-             REGULAR_COMPLIANCE | SOLVES_FLOATING,
-  .param_size = sizeof(newton), .work_size = sizeof(newton_work),
-  .options = newton_options, .setup = newton_setup, .solve = newton_solve,
-  .keep = newton_keep
-};
-/* clang-format on */
+    SOLVER_OF(newton), .family = "Newton",
+    .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
+               REGULAR_COMPLIANCE | SOLVES_FLOATING,
+    .keep = newton_keep};

@@ -529,13 +529,12 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   return OK;
 }
 
-/* clang-format off */
 const solver_ops proximal_solver = {
-  .name = "proximal",
-  .family = "Newton",
-  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
-             SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
-  .work_size = sizeof(proximal_work), .options = proximal_options,
-  .setup = proximal_setup, .solve = proximal_solve
-};
-/* clang-format on */
+    .name = "proximal",
+    .family = "Newton",
+    .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
+               SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
+    .work_size = sizeof(proximal_work),
+    .options = proximal_options,
+    .setup = proximal_setup,
+    .solve = proximal_solve};

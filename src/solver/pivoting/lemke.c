@@ -760,14 +760,7 @@ static status lemke_keep(void *work, archive *a) {
   return OK;
 }
 
-/* clang-format off */
 const solver_ops lemke_solver = {
-  .name = "lemke",
-  .family = "pivoting",
-  .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
-  .entries = "METHOD=LEMKE, which pivots on columns,",
-  .param_size = sizeof(lemke), .work_size = sizeof(lemke_work),
-  .options = lemke_options, .setup = lemke_setup, .solve = lemke_solve,
-  .keep = lemke_keep
-};
-/* clang-format on */
+    SOLVER_OF(lemke), .family = "pivoting",
+    .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
+    .entries = "METHOD=LEMKE, which pivots on columns,", .keep = lemke_keep};
