@@ -127,7 +127,6 @@ TEST(friction_force_of_the_block) {
   /* Equilibrium gives the normal force whatever the mesh. */
   ck_assert_double_lt(fabs(told_of(&j, 2).error), 1e-9);
   ck_assert(goal_has_verdict(&j, "PRESSED", "reliable"));
-  job_end(&j);
 }
 
 /* A slice of that block in space: what friction does between the plane of
@@ -602,7 +601,6 @@ TEST(means_in_space_go_on_behind_planes_of_symmetry) {
     ck_assert_double_eq_tol(g.value + g.error, 10.0, 0.1);
   }
   ck_assert(goal_has_verdict(&j, "CUT", "no_end"));
-  job_end(&j);
 }
 
 /* A support that holds the end of a contact, and no more, is no plane of
@@ -622,7 +620,6 @@ TEST(ends_that_a_point_holds_are_ends) {
     write_block(&j, 0.1, 1000., "", cards);
     ck_assert_int_eq(isnan(told_of(&j, 0).value), k == 0);
     ck_assert_int_eq(goal_has_verdict(&j, "WIDE", "no_end"), k == 0);
-    job_end(&j);
   }
 }
 

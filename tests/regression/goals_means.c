@@ -315,47 +315,29 @@ TEST(width_ends_between_closed_and_open_nodes) {
 /* A thin layer on a flat parabola, whose pressure goes to zero along a line: by
  * three quarters of the zone its end is an edge too near. That of squares of
  * 1/8 is at 39.80. */
-START_TEST(width_of_a_thin_layer_ends_at_its_last_nodes) {
-  job j = strip(60, 2, "1E-6*x^2", "TOP, 1\nTOP, 2, 2, -0.0016\n");
-  dat t = job_table(&j, "GOALS", -1);
+TEST(width_of_a_thin_layer_ends_at_its_last_nodes) {
+  JOB j = strip(60, 2, "1E-6*x^2", "TOP, 1\nTOP, 2, 2, -0.0016\n");
+  DAT t = job_table(&j, "GOALS", -1);
   const double band = dat_at(&t, 0, "band");
   ck_assert_double_eq_tol(dat_at(&t, 0, "corrected"), 39.80, band);
   ck_assert(band >= 0.5 && band < 0.6);
-  dat_free(&t);
-  job_end(&j);
 }
 
 /* A layer under a flat punch with a rounded edge: the largest pressure, near
  * the edge, is 42.07 by RADIUS=0.08 on squares of 1/48. A mean that half its
  * radius would change is one over few nodes. */
-START_TEST(band_of_the_largest_pressure_has_a_narrow_peak) {
+TEST(band_of_the_largest_pressure_has_a_narrow_peak) {
   char verdicts[80];
   for (int fine = 0; fine < 2; ++fine) {
-    job j = strip(fine ? 3 : 6, fine ? 16 : 8, "0.1*max(0, x - 2)^2",
+    JOB j = strip(fine ? 3 : 6, fine ? 16 : 8, "0.1*max(0, x - 2)^2",
                   "TOP, 1\nTOP, 2, 2, -0.03\n");
-    dat t = job_table(&j, "GOALS", -1);
+    DAT t = job_table(&j, "GOALS", -1);
     const double off = 42.07 - dat_at(&t, 1, "corrected");
     ck_assert_double_le(fabs(off), dat_at(&t, 1, "band"));
     ck_assert_double_le(dat_at(&t, 1, "band"), 0.3 * 42.07);
     take_verdicts(&j, verdicts, sizeof verdicts);
     ck_assert_int_eq(strstr(verdicts, "few_nodes") != NULL, fine);
-    dat_free(&t);
-    job_end(&j);
   }
 }
-END_TEST
 
-int main(void) {
-  TCase *tests = tcase_create("goals_means");
-  tcase_set_timeout(tests, UNIT_SECONDS);
-  tcase_add_loop_test(tests, means_of_linear_fields_are_exact, 0, 3);
-  tcase_add_loop_test(tests, errors_of_means_have_what_is_between_the_nodes, 0,
-                      3);
-  tcase_add_loop_test(tests, errors_of_means_have_what_is_beyond_chords, 0, 2);
-  tcase_add_test(tests, goals_of_mirror_images_are_the_same);
-  tcase_add_test(tests, goals_of_halves_and_of_thick_plates_are_the_same);
-  tcase_add_test(tests, width_ends_between_closed_and_open_nodes);
-  tcase_add_test(tests, width_of_a_thin_layer_ends_at_its_last_nodes);
-  tcase_add_test(tests, band_of_the_largest_pressure_has_a_narrow_peak);
-  return unit_run("goals_means", tests);
-}
+UNIT_MAIN("goals_means")

@@ -363,12 +363,11 @@ TEST(materials_that_meet_in_space) {
 
 static job of_peak(const char *words, const char *gap, const char *radius,
                    const char *hold) {
-  char on[100], cards[600];
-  snprintf(on, sizeof on, "GAP\n\"%s\"" CONTACT, gap);
-  snprintf(cards, sizeof cards,
-           "%s*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C%s\n*STEP\n*STATIC\n"
-           "*BOUNDARY\nRIGHT, 1\n%s*PRINT, CONTACT\n",
-           on, radius, hold);
+  PRINTED(on, "GAP\n\"%s\"" CONTACT, gap);
+  PRINTED(cards,
+          "%s*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C%s\n*STEP\n*STATIC\n"
+          "*BOUNDARY\nRIGHT, 1\n%s*PRINT, CONTACT\n",
+          on, radius, hold);
   return body_of(words, cards);
 }
 
@@ -391,7 +390,7 @@ TEST(peaks_do_not_jump_where_a_zone_reaches_a_plane) {
 
 /* On elements that no smaller mean fits, the largest pressure may be that of
  * its node. */
-START_TEST(peaks_on_few_elements_have_that_of_their_node_in_the_band) {
+TEST(peaks_on_few_elements_have_that_of_their_node_in_the_band) {
   job j = of_peak("rect 24 12 1 0.5 alternate", "0.1*(x-0.6)^2", "",
                   "TOP, 2, 2, -0.009\n");
   dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
@@ -401,7 +400,6 @@ START_TEST(peaks_on_few_elements_have_that_of_their_node_in_the_band) {
   dat_free(&c);
   job_end(&j);
 }
-END_TEST
 
 /* In space the area is larger by what of it is behind each plane: as much as
  * the pressure there is of the largest. */
@@ -437,8 +435,8 @@ TEST(radius_of_a_zone_that_planes_halve) {
 /* Of the border within the radius of a point a part is closed; or it is within
  * that of the node next to it, not of the point. At a node of the border there
  * is no peak. */
-START_TEST(means_end_at_a_border_that_is_closed_in_part) {
-  job j = of_peak("box 8 8 1 1 1 0.3", "max(0, y-0.13)",
+TEST(means_end_at_a_border_that_is_closed_in_part) {
+  JOB j = of_peak("box 8 8 1 1 1 0.3", "max(0, y-0.13)",
                   ", RADIUS=0.3\n0.15, 0.25, 0.\n"
                   "*GOAL, NAME=Q, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.18\n"
                   "0.185, 0., 0.\n"
@@ -447,9 +445,7 @@ START_TEST(means_end_at_a_border_that_is_closed_in_part) {
   ck_assert(goal_has_verdict(&j, "P", "no_end"));
   ck_assert(!goal_has_verdict(&j, "Q", "no_end"));
   ck_assert(goal_has_verdict(&j, "R", "no_peak"));
-  job_end(&j);
 }
-END_TEST
 
 /* Next to an end of a line that is no plane of symmetry there is no peak, and
  * where nothing is closed no zone, nor a largest pressure. */
@@ -471,15 +467,4 @@ TEST(pressures_at_ends_and_of_an_open_contact) {
     ck_assert_msg(goal_has_verdict(&j, at[2 * k], "no_peak"), "%s", at[2 * k]);
 }
 
-UNIT_MAIN("goals_supports", energy_of_a_ring_that_is_pressed,
-          nodes_of_supports_have_a_part_of_the_force, zeros_are_not_exact,
-          energies_by_loads_and_by_supports, ends_of_supports_are_not_reliable,
-          ends_of_supports_in_space, materials_that_meet_at_a_free_side,
-          materials_that_meet_smoothly, temperatures_that_do_not_meet,
-          energies_by_loads_and_by_temperatures,
-          temperatures_that_vary_within_elements, materials_that_meet_in_space,
-          peaks_do_not_jump_where_a_zone_reaches_a_plane,
-          peaks_on_few_elements_have_that_of_their_node_in_the_band,
-          radius_of_a_zone_that_planes_halve,
-          means_end_at_a_border_that_is_closed_in_part,
-          pressures_at_ends_and_of_an_open_contact)
+UNIT_MAIN("goals_supports")

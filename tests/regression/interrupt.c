@@ -334,7 +334,7 @@ TEST(other_file_of_that_name_stays) {
 }
 
 /* Bits of the standard streams that are closed, once for gmsh too. */
-START_TEST(closed_streams_are_no_matter) {
+TEST(closed_streams_are_no_matter) {
   static const unsigned closed[] = {7, 3, 5, 6};
   for (size_t k = 0; k < sizeof closed / sizeof *closed; ++k) {
     JOB j = block(2);
@@ -345,7 +345,7 @@ START_TEST(closed_streams_are_no_matter) {
       for (int fd = 0; fd < 3; ++fd)
         if (closed[k] >> fd & 1) close(fd);
       if (k > 0) kept_mesh_preload("");
-      execl(program(), program(), deck, (char *)NULL);
+      execl(job_program(), job_program(), deck, (char *)NULL);
       _exit(99);
     }
     ck_assert_int_eq(finish(pid), 0);

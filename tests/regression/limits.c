@@ -201,11 +201,9 @@ TEST(auto_comes_to_proximal) {
   int code =
       job_run_with(&j, "input/greco/greco", "", 0, "-D MU=1E6 -D N=31 -D DT=1");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  char *lst = job_file(&j, "lst");
+  FREED char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(
       strstr(lst, "lemke: cycle of states, proximal: converged"));
-  free(lst);
-  job_end(&j);
 }
 
 /*

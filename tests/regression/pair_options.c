@@ -241,12 +241,9 @@ TESTS(bodies_between_others_balance, 3) {
   for (int k = 0; k < 2; ++k)
     ck_assert_double_eq_tol(dat_sum(&n, k == 0 ? "contact_x" : "contact_y"), 0,
                             1e-11);
-  ck_assert_double_le(fabs(value(&j, "ENERGY", -1, "energy_defect_relative")),
-                      1e-10);
+  ck_assert_double_le(
+      fabs(job_value(&j, "ENERGY", -1, "energy_defect_relative")), 1e-10);
   ck_assert_double_eq(job_told(&j, "bodies"), 4);
-  dat_free(&n);
-  dat_free(&t);
-  job_end(&j);
 }
 
 /* At (1, 2) the roof, the right and the left block follow each other. */

@@ -89,9 +89,9 @@ static void forecast_row(const job *j, double level, double row[4]) {
  * left of it, by the order that is told, and little less. Seconds go with
  * unknowns, or their power 1.25, times increments, but for what is paid once,
  * memory with a power 1.05. */
-START_TEST(forecast_of_a_flow_is_that_of_its_errors) {
+TEST(forecast_of_a_flow_is_that_of_its_errors) {
   double by_time, order, fitted, of, row[2][4];
-  job j = job_begin("block");
+  JOB j = job_begin("block");
   block_file_write(&j, (int[]){8, 6}, (double[]){4.0, 3.0}, 0);
   job_write(&j, "block.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
@@ -125,13 +125,11 @@ START_TEST(forecast_of_a_flow_is_that_of_its_errors) {
       longer > 0.5 * more * times && longer < 1.1 * pow(more, 1.25) * times,
       "%g times the seconds", longer);
   ck_assert_double_eq_tol(held, pow(more, 1.05), 0.02 * held);
-  job_end(&j);
 }
-END_TEST
 
 /* A number of a table takes 250 ns, a row ten of them: 63 nodes and 96 elements
  * in 100 increments. */
-START_TEST(tables_count_in_the_forecast) {
+TEST(tables_count_in_the_forecast) {
   double cpu[2], row[4];
   for (int k = 0; k < 2; ++k) {
     JOB j = job_begin("block");
@@ -146,7 +144,6 @@ START_TEST(tables_count_in_the_forecast) {
     ck_assert_int_eq(job_run(&j, "--estimate-cost"), 0);
     forecast_row(&j, 10, row);
     cpu[k] = row[2];
-    job_end(&j);
   }
   ck_assert_msg(cpu[1] > cpu[0] + 0.5 * 100 * (63 + 96) * 10 * 250e-9,
                 "%g, %g s", cpu[0], cpu[1]);
@@ -497,16 +494,4 @@ TEST(true_error_of_a_ring_counts_the_hoop) {
   }
 }
 
-UNIT_MAIN("parts", shares_of_the_elements_make_up_the_error,
-          true_error_of_a_ring_counts_the_hoop,
-          error_of_an_unloaded_body_is_over_the_largest,
-          bound_of_the_solver_is_over_the_largest_energy,
-          bound_of_heat_that_falls, zones_of_revolution_are_rings,
-          directions_of_slip_part_where_there_is_none,
-          true_stress_error_counts_every_component,
-          target_counts_all_errors_of_the_largest_increment,
-          tables_count_in_the_forecast,
-          forecast_of_a_flow_is_that_of_its_errors,
-          bound_of_creep_under_a_load_that_falls,
-          change_by_creep_under_a_force_that_falls,
-          bound_of_friction_under_a_pull_that_falls)
+UNIT_MAIN("parts")

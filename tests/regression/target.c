@@ -262,7 +262,6 @@ TEST(structured_geometry_is_made_finer) {
       ck_assert_ptr_nonnull(
           strstr(j.errors, "cannot make a folder in square.inp: Not"));
     }
-    job_end(&j);
   }
 }
 

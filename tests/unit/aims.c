@@ -182,7 +182,7 @@ static int still_after(int n, const int *cells, const int *slip,
 /* An error that stays ends it on three times the nodes, in two passes. Where
  * none is known four passes do, unless half as many nodes more are closed than
  * in all passes before. */
-START_TEST(goals_stand_still_where_passes_gain_nothing) {
+TEST(goals_stand_still_where_passes_gain_nothing) {
   static const int one[] = {1, 1, 1, 1, 1, 1}, none[] = {0, 0, 0, 0, 0, 0};
   static const int more[] = {2, 3, 5, 8, 12, 18},
                    few[] = {5, 7, 10, 14, 20, 29}, back[] = {9, 2, 9, 2, 9, 2};

@@ -698,7 +698,6 @@ TEST(each_refused_request_is_an_error_and_frees_all) {
     memory_free(f);
     ck_assert_uint_eq(memory_in_use(), before);
   }
-  scene_end(&s);
 }
 
 UNIT_MAIN("fracture")

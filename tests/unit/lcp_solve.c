@@ -75,7 +75,7 @@ TEST(problems_without_solution_are_proved_to_have_none) {
  * z_1 w_1 = 0 and z_2 w_2 = 0 with w_1 >= 0: z_2 >= 1, so w_2 = 0, z_1 = 1,
  * w_1 = 0: z = (1, 1). M is indefinite, and pivoting finds a ray. */
 /* The first tries, short where others follow, end before a ray. */
-START_TEST(proof_is_looked_for_after_short_tries) {
+TEST(proof_is_looked_for_after_short_tries) {
   lcp_case c = lcp_make(LCP_INFEASIBLE, 160, 257);
   const lcp_control control = {.tol = 1e-8};
   lcp_data p = {c.n, c.M, c.q};
