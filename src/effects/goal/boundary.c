@@ -90,6 +90,34 @@ static spot spot_at(const mesh *m, const patch *p, int k) {
 
 /* ---- faces --------------------------------------------------------------- */
 
+/* 1: a face of the mesh has the nodes v[dim] of a side of its element. */
+static int has_face(const mesh *m, const size_t *start, const int *at,
+                    const int *v) {
+  int any = 0;
+  for (size_t k = start[v[0]]; k < start[v[0] + 1]; ++k)
+    any |= memcmp(m->face + m->dim * at[k], v, m->dim * sizeof *v) == 0;
+  return any;
+}
+
+status goal_add_faces(const mesh *m, const goal_border *b, mesh *out) {
+  const int dim = m->dim, most = m->n_face + b->n;
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(m, &rings));
+  *out = *m;
+  PASS_NEW_ALL(OF(out->face, dim * most), OF(out->face_elem, most),
+               OF(out->face_other, most));
+  COPY(out->face, m->face, dim * m->n_face);
+  COPY(out->face_elem, m->face_elem, m->n_face);
+  COPY(out->face_other, m->face_other, m->n_face);
+  for (int k = 0; k < b->n; ++k) {
+    int *v = out->face + dim * out->n_face;
+    mesh_side_nodes(m, b->side[k], v);
+    if (has_face(m, rings.start, rings.face, v)) continue;
+    out->face_elem[out->n_face] = b->side[k] / (dim + 1);
+    out->face_other[out->n_face++] = -1;
+  }
+  return OK;
+}
+
 /* The edges of face f that are curved, to e; their number. */
 static int bent_edges(const run *r, const smooth_faces *rings, int f,
                       bent_edge *e) {

@@ -103,6 +103,9 @@ typedef struct goal_border {
   double *angle; /* [n_node] of the body at the nodes, rad; in space NULL */
 } goal_border;
 status goal_border_new(const mesh *m, goal_border *b); /* support.c */
+/* boundary.c: *out is m with more faces, the sides of the border that are none:
+ * arrays of faces are new, all else is borrowed. ERR_MEMORY. */
+status goal_add_faces(const mesh *m, const goal_border *b, mesh *out);
 
 /* jumps.c */
 /* 1: no stress that is continuous at a node has the loads of two sides with

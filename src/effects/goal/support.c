@@ -16,6 +16,7 @@
 
 /* Of a face that is a chord of a smooth surface, rad: half of what it turns. */
 static const double SLACK = 0.27;
+static const double TURN = 1e-6; /* rad, of a border that is straight */
 
 /* ---- what supports prescribe between the nodes --------------------------- */
 
@@ -447,6 +448,9 @@ static status mark_plane(const run *r, const goal_border *border,
          is_point(r->body.d.fixed + 2 * i, &c[i]) ||
          is_singular_joint(&c[i], &at[i])))
       s->ends[i] |= GOAL_END_OF_SUPPORT;
+  for (int i = 0; i < m->n_node; ++i)
+    if (border->angle[i] > M_PI + TURN && border->angle[i] < 2.0 * M_PI - TURN)
+      s->ends[i] |= GOAL_HOLLOW;
   return OK;
 }
 
