@@ -35,6 +35,8 @@ static double of_ball(double r) {
   return 100.0 / 7.0 * r * 1e-5 * (0.4 + 0.65 * 8.0 / (r * r * r));
 }
 
+static double of_core(double r);
+
 /* Estimate of the goal of row k over the error, within 1 - off and 1 + off;
  * error and estimate differ by no more than the band. */
 static void check_goal(const dat *t, int k, double exact, double off) {
@@ -78,6 +80,7 @@ static void check_body(const char *geo, const char *section, const char *z,
   check_goal(&t, 2, c->along * c->u(2.0), 0.15);
   check_goal(&t, 3, 50.0 * c->area * c->u(1.0), 0.1);
   if (c->u == of_ring) check_goal(&t, 4, 20.0, 0.1);
+  if (c->u == of_core) check_goal(&t, 4, -16.8 / 0.82, 0.1);
   dat_free(&t);
   job_end(&j);
 }
@@ -124,6 +127,33 @@ static double of_hole(double r) {
 START_TEST(hole_without_a_name_is_round) {
   check_body(RING UNNAMED, ", TYPE=CPE3", "", "*DSLOAD\nOUTER, P, 100.\n",
              &(closed){of_hole, M_2_PI, -M_PI * 1.3 / 1.4, 0.15});
+}
+END_TEST
+
+/* In the place of the hole a core, BODY, of a tenth of the stiffness. */
+static double of_core(double r) { return -5.2e-5 / 0.82 * (r + 1.8 / r); }
+static double of_ball_core(double r) {
+  return -3.1e-4 / 7.0 * (r + 39.0 / 31.0 / (r * r));
+}
+
+START_TEST(interface_of_materials_is_round) {
+  static const closed on[] = {
+      {of_core, M_2_PI, -M_PI * 2.9 / 2.8, 0.25},
+      {of_ball_core, M_PI_4, -8 * M_PI * 287.0 / 280.0, 0.6}};
+  char section[160];
+  snprintf(section, sizeof section,
+           ", TYPE=%s\n*MATERIAL, NAME=S\n*ELASTIC\n1.D6, 0.3\n"
+           "*SOLID SECTION, ELSET=RIM, MATERIAL=S, TYPE=%s",
+           _i == 0 ? "CPE3" : "CAX3", _i == 0 ? "CPE3" : "CAX3");
+  check_body(RING
+             "Line(5) = {1, 2}; Line(6) = {5, 1};\n"
+             "Curve Loop(2) = {5, -4, 6}; Plane Surface(2) = {2};\n"
+             "Physical Surface(\"BODY\") = {2};\n"
+             "Physical Surface(\"RIM\") = {1};\n"
+             "Physical Curve(\"BOTTOM\") = {1, 5};\n"
+             "Physical Curve(\"OUTER\") = {2};\n"
+             "Physical Curve(\"LEFT\") = {3, 6};\n",
+             section, "", "*DSLOAD\nOUTER, P, 100.\n", &on[_i]);
 }
 END_TEST
 
@@ -485,6 +515,7 @@ int main(void) {
   tcase_add_test(tests, shell_of_revolution_under_tractions_of_a_formula);
   tcase_add_test(tests, slice_in_space_under_a_pressure);
   tcase_add_test(tests, hole_without_a_name_is_round);
+  tcase_add_loop_test(tests, interface_of_materials_is_round, 0, 2);
   tcase_add_test(tests, few_elements_round_a_hole);
   tcase_add_loop_test(tests, forces_on_the_body_beyond_chords, 0, 2);
   tcase_add_test(tests, mean_stress_of_a_ring);

@@ -133,7 +133,8 @@ enum {
   GOAL_END_OF_CONTACT = 1,
   GOAL_END_OF_SUPPORT = 2,
   GOAL_NEAR_SUPPORT = 4, /* of an element with such a node */
-  GOAL_HOLLOW = 8        /* of a hollow of the border, in the plane */
+  GOAL_HOLLOW = 8        /* of a hollow of the border, in the plane, or a curved
+                            interface */
 };
 
 /* What the surface of the body does at the solution. */

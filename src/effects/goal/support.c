@@ -126,6 +126,13 @@ static int is_bent(int n, double angle, double whole) {
   return n > 2 || fabs(angle - 0.5 * whole) > 2.0 * SLACK;
 }
 
+/* 1: the border at a node turns inwards, or inside the interface of two regions
+ * turns. */
+static int is_hollow(double angle, const joint *j) {
+  if (angle < 2.0 * M_PI - TURN) return angle > M_PI + TURN;
+  return j->n == 2 && fabs(j->angle - M_PI) > TURN;
+}
+
 /* ---- where they end, in the plane ---------------------------------------- */
 
 typedef enum { FREE, CLAMPED, ROLLER, ACROSS, SLANTED } kind;
@@ -449,8 +456,7 @@ static status mark_plane(const run *r, const goal_border *border,
          is_singular_joint(&c[i], &at[i])))
       s->ends[i] |= GOAL_END_OF_SUPPORT;
   for (int i = 0; i < m->n_node; ++i)
-    if (border->angle[i] > M_PI + TURN && border->angle[i] < 2.0 * M_PI - TURN)
-      s->ends[i] |= GOAL_HOLLOW;
+    if (is_hollow(border->angle[i], &at[i])) s->ends[i] |= GOAL_HOLLOW;
   return OK;
 }
 
