@@ -51,12 +51,12 @@ struct goal_estimator {
   goal_solution s;
   space_recovery *recovery; /* borrowed */
   int n_region;
-  double **stress; /* [n_region][ns*n_node] recovered of u, Pa */
-  bubbles all;     /* u in the bubbles */
-  bubbles given;   /* what supports and contact give of it; NULL: no energy */
-  double *w;       /* [dim*n_node] of the energy; workspace, NULL: none */
-  double by_given; /* -, share of the energy that z has */
-  double *eigen;   /* [ns*n_elem] E e0 of the energy, Pa; NULL: none */
+  double **stress;    /* [n_region][ns*n_node] recovered of u, Pa */
+  bubbles all;        /* u in the bubbles */
+  bubbles given;      /* what supports and contact give of it */
+  double *w;          /* [dim*n_node] of the energy; workspace, NULL: none */
+  double by_given;    /* -, share of the energy that z has */
+  double *eigen;      /* [ns*n_elem] E e0 of the energy, Pa; NULL: none */
   double *node_eigen; /* [ns*n_node] recovered; workspace */
   double *edge;       /* [dim*n_edge] u in the bubbles of contact edges, m */
   double *own;        /* [n_elem] |e_u|^2, J */
@@ -331,9 +331,7 @@ static void bubbles_of(goal_estimator *of, const double *G, int elem_id) {
       if ((G != NULL) == (j != NULL)) continue;
       if (j == NULL) bubble_of(of, G, v[edge[0]], v[edge[1]], whole, given);
       add_bubble(d, elem_id, edge, g, j != NULL ? j->whole : whole, &of->all);
-      if (of->given.strain != NULL)
-        add_bubble(d, elem_id, edge, g, j != NULL ? j->given : given,
-                   &of->given);
+      add_bubble(d, elem_id, edge, g, j != NULL ? j->given : given, &of->given);
     }
 }
 
@@ -385,10 +383,10 @@ static status new_fields(goal_estimator *e) {
   const goal_solution *s = &e->s;
   const int axi = s->d->kin[0] == AXISYMMETRIC;
   PASS(new_bubbles(s, s->has_flux || s->has_mean || axi, &e->all));
+  PASS(new_bubbles(s, axi, &e->given));
   if (!s->has_energy) return OK;
   PASS_NEW(e->w, s->d->mesh->dim * s->d->mesh->n_node);
-  PASS(new_eigen(e));
-  return new_bubbles(s, axi, &e->given);
+  return new_eigen(e);
 }
 
 status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
@@ -619,11 +617,13 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   double product = space_product(e->recovery, elem_id, &u, &of_y, &square);
   const double both = sqrt(fmax(e->own[elem_id] * square, 0.0));
   const double residual = residual_of(e, elem_id, y, tau, of_u, &e->all);
-  if (of_u && is_axi(e, elem_id))
-    product = axi_product(e, elem_id, &u, &of_y, y, &own);
+  const double given = residual_of(e, elem_id, y, tau, of_u, &e->given);
+  const double like = is_axi(e, elem_id)
+                          ? axi_product(e, elem_id, &u, &of_y, y, &own)
+                          : product;
   if (of_u) {
-    const double given = residual_of(e, elem_id, y, tau, of_u, &e->given);
     const double varied = eigen_product(e, elem_id, &u, &of_y);
+    product = like;
     out->error += 0.5 * e->by_given * (given + product + varied) +
                   0.5 * (1.0 - e->by_given) * (residual + own);
     out->magnitude += fabs(given) + fabs(varied);
@@ -636,6 +636,9 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   int ends = 0;
   for (int a = 0; a <= m->dim; ++a)
     ends |= e->s.surface->ends[m->elem[(m->dim + 1) * elem_id + a]];
+  if (ends == GOAL_HOLLOW && !of_u && tau == NULL)
+    out->twice += like + given - residual;
+  ends &= ~GOAL_HOLLOW;
   if (ends == GOAL_NEAR_SUPPORT) out->near += both;
   ends &= ~GOAL_NEAR_SUPPORT;
   if (ends != 0) out->ends += both;

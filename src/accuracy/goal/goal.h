@@ -53,10 +53,11 @@ typedef struct goal_estimate {
   double supports;  /* of that what is not at contact ends */
   double sharp;     /* of ends what GOAL_END_OF_SUPPORT has */
   double near;      /* the same of the elements next to those of sharp */
-  double history;   /* sum of the magnitudes by the increments before */
-  double hoop;      /* by the hoop strains of axisymmetric elements, which the
-                       stiffness takes at their mean radius */
-  double few;       /* |error| of increments with few closed nodes */
+  double twice;   /* by recovered stresses of both less error, round hollows */
+  double history; /* sum of the magnitudes by the increments before */
+  double hoop;    /* by the hoop strains of axisymmetric elements, which the
+                     stiffness takes at their mean radius */
+  double few;     /* |error| of increments with few closed nodes */
 } goal_estimate;
 /* *sum += *e. */
 void goal_estimate_add(const goal_estimate *e, goal_estimate *sum);
@@ -131,7 +132,9 @@ typedef struct goal_flux {
 enum {
   GOAL_END_OF_CONTACT = 1,
   GOAL_END_OF_SUPPORT = 2,
-  GOAL_NEAR_SUPPORT = 4 /* of an element with such a node */
+  GOAL_NEAR_SUPPORT = 4, /* of an element with such a node */
+  GOAL_HOLLOW = 8        /* of a hollow of the border, in the plane, or a curved
+                            interface */
 };
 
 /* What the surface of the body does at the solution. */

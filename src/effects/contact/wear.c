@@ -6,15 +6,16 @@
  *
  * This is Euler's method for the pressures: with A the stiffness of the normals
  * of the nodes and D = k |slip|/area, the wear of an increment reduces the
- * forces r by A D r, and their error is multiplied by I - A D: it grows once an
- * eigenvalue of A D is above 2, which is refused.
+ * forces r by A D r, and their error is multiplied by I - A D: it changes its
+ * sign once an eigenvalue of A D is above 1, and grows above 2, which is
+ * refused.
  */
 #include "effects/plan/effect.h"
 
 #include "run/column_row.h"
 
 /* depth[dim*n_node] of the mesh, along the normals of the rows of a contact
- * node, m. */
+ * node, m; behind them 1 once wear beyond 1 is told. */
 
 static int requires_wear(const model *m, const reason *why) {
   const effect_card *c = model_effect_card(m, "WEAR", -1);
@@ -31,7 +32,7 @@ static effect_work expected(const plan_sizes *s) {
 }
 
 static size_t length_of(const run *r) {
-  return (size_t)r->msh->dim * r->msh->n_node;
+  return (size_t)r->msh->dim * r->msh->n_node + 1;
 }
 
 /* Tributary area of that normal, m2. */
@@ -85,19 +86,21 @@ static status overshoot(const run *r, const double *D, double *largest) {
   return OK;
 }
 
-static status refuse(const run *r, const effect_card *c, double factor) {
+static void tell(const run *r, const effect_card *c, double factor) {
   const double dt = r->now.t - r->old.t;
   const int whole = r->step->kind == STEP_STATIC;
+  const int grows = factor > 2.0;
   char shorter[80] = "";
   if (dt > 0.0)
     snprintf(shorter, sizeof shorter, "give %sincrements of dt <= %.3g, or ",
              whole ? "*QUASISTATIC " : "", dt / factor);
-  message_add(r->m->log, P2050, &c->at,
+  message_add(r->m->log, grows ? P2050 : P2051, &c->at,
               "step %d, time %g: the wear of an increment of dt = %g reduces "
-              "the forces of a node by %.3g times their value, above 2 they "
-              "grow without bound: %slet what acts at once grow over the step",
-              run_step_id(r) + 1, r->now.t, dt, factor, shorter);
-  RAISE(ERR_DECK, "%s:%d: the increment is not stable", PLACE(c->at));
+              "the forces of a node by %.3g times their value, above %s: "
+              "%slet what acts at once grow over the step",
+              run_step_id(r) + 1, r->now.t, dt, factor,
+              grows ? "2 they grow without bound" : "1 the wear overshoots",
+              shorter);
 }
 
 /* D[dim*n] of the increment; the card of a node that wears. */
@@ -125,10 +128,13 @@ static status wear_off(run *r, void *self) {
   OWNED_NEW(double, D, r->nodes.n_c);
   const effect_card *worn = find_wear(r, D);
   PASS(overshoot(r, run_rows(r, 0, D), &factor));
+  double *told = &depth[length_of(r) - 1];
+  const int solved = r->solving.report.outcome > 0 && r->course.unsettled == 0;
+  if (factor > 2.0 && !solved) return OK;
+  if (factor > 2.0 || (factor > 1.0 && *told == 0.0)) tell(r, worn, factor);
   if (factor > 2.0)
-    return r->solving.report.outcome > 0 && r->course.unsettled == 0
-               ? refuse(r, worn, factor)
-               : OK;
+    RAISE(ERR_DECK, "%s:%d: the increment is not stable", PLACE(worn->at));
+  if (factor > 1.0) *told = 1.0;
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a)
       depth[dim * r->surface->node_id[i] + a] -=

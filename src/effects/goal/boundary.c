@@ -90,6 +90,34 @@ static spot spot_at(const mesh *m, const patch *p, int k) {
 
 /* ---- faces --------------------------------------------------------------- */
 
+/* 1: a face of the mesh has the nodes v[dim] of a side of its element. */
+static int has_face(const mesh *m, const size_t *start, const int *at,
+                    const int *v) {
+  int any = 0;
+  for (size_t k = start[v[0]]; k < start[v[0] + 1]; ++k)
+    any |= memcmp(m->face + m->dim * at[k], v, m->dim * sizeof *v) == 0;
+  return any;
+}
+
+status goal_add_faces(const mesh *m, const goal_border *b, mesh *out) {
+  const int dim = m->dim, most = m->n_face + b->n;
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(m, &rings));
+  *out = *m;
+  PASS_NEW_ALL(OF(out->face, dim * most), OF(out->face_elem, most),
+               OF(out->face_other, most));
+  COPY(out->face, m->face, dim * m->n_face);
+  COPY(out->face_elem, m->face_elem, m->n_face);
+  COPY(out->face_other, m->face_other, m->n_face);
+  for (int k = 0; k < b->n; ++k) {
+    int *v = out->face + dim * out->n_face;
+    mesh_side_nodes(m, b->side[k], v);
+    if (has_face(m, rings.start, rings.face, v)) continue;
+    out->face_elem[out->n_face] = b->side[k] / (dim + 1);
+    out->face_other[out->n_face++] = -1;
+  }
+  return OK;
+}
+
 /* The edges of face f that are curved, to e; their number. */
 static int bent_edges(const run *r, const smooth_faces *rings, int f,
                       bent_edge *e) {
@@ -474,7 +502,7 @@ status goal_add_boundary(const run *r, double *dF) {
   return add_loads(r, &rings, dF);
 }
 
-/* ---- means --------------------------------------------------------------- */
+/* ---- interfaces ---------------------------------------------------------- */
 
 static double slope_of(const mesh *m, int elem, const double *u, int component,
                        const double *along) {
@@ -486,6 +514,127 @@ static double slope_of(const mesh *m, int elem, const double *u, int component,
       sum += u[m->dim * v[a] + component] * g[m->dim * a + c] * along[c];
   return sum;
 }
+
+/* Sides between two regions: m with these faces alone, of the lower region, as
+ * if they were free; back[n_face] the elements behind, new. */
+static status between_regions(const mesh *m, const space_recovery *of,
+                              mesh *out, int **back) {
+  const int dim = m->dim, n = (dim + 1) * m->n_elem;
+  OWNED size_t *start = NULL;
+  OWNED int *elem = NULL;
+  PASS(mesh_node_elements(m, &start, &elem));
+  *out = *m;
+  out->n_face = 0;
+  PASS_NEW_ALL(OF(out->face, dim * n), OF(out->face_elem, n),
+               OF(out->face_other, n), OF(*back, n));
+  for (int side = 0; side < n; ++side) {
+    int *v = out->face + dim * out->n_face;
+    mesh_side_nodes(m, side, v);
+    for (size_t k = start[v[0]]; k < start[v[0] + 1]; ++k) {
+      int met = 0;
+      for (int i = 0; i < dim * (dim + 1); ++i)
+        met += m->elem[(dim + 1) * elem[k] + i / dim] == v[i % dim];
+      if (met < dim ||
+          space_region(of, elem[k]) <= space_region(of, side / (dim + 1)))
+        continue;
+      (*back)[out->n_face] = elem[k];
+      out->face_other[out->n_face] = -1;
+      out->face_elem[out->n_face++] = side / (dim + 1);
+      break;
+    }
+  }
+  return OK;
+}
+
+static void tensor_of(int dim, const double *t, double T[3][3]) {
+  const double all[3][3] = {
+      {t[0], t[3], dim == 3 ? t[5] : 0.0},
+      {t[3], t[1], dim == 3 ? t[4] : 0.0},
+      {dim == 3 ? t[5] : 0.0, dim == 3 ? t[4] : 0.0, t[2]}};
+  memcpy(T, all, sizeof all);
+}
+
+/* e[6]: the strains of the gradient jump n'. */
+static void strain_of(int dim, const double *n, const double *jump, double *e) {
+  CLEAR(e, 6);
+  for (int c = 0; c < 3; ++c) e[c] = jump[c] * n[c];
+  for (int c = 0; c < (dim == 3 ? 3 : 1); ++c)
+    e[3 + c] = jump[c] * n[(c + 1) % 3] + jump[(c + 1) % 3] * n[c];
+}
+
+/* What of dF the elements on[2] on both sides of an interface beyond its chord
+ * by a volume have, the first that within: the traction t[3] is the same on
+ * both sides, what the gradient along n has more on the first has the strains
+ * e[6]. */
+static void add_shifted(const run *r, const patch *p, const int *on,
+                        const double *t, const double *e, double *dF) {
+  const mesh *m = r->msh;
+  const int dim = m->dim;
+  const double volume = volume_beyond(r, p);
+  double hoop = 0.0;
+  for (int side = 0; side < 2; ++side) {
+    const int *v = m->elem + (dim + 1) * on[side];
+    const double *sigma = r->result.stress + (size_t)r->body.d.ns * on[side];
+    const double sign = side == 0 ? 1.0 : -1.0;
+    double T[3][3], g[12], more[6];
+    element_stress(&r->body.d, on[side], e, more);
+    for (int k = 0; k < r->body.d.ns; ++k)
+      more[k] = 0.5 * more[k] - sign * sigma[k];
+    hoop += more[2];
+    tensor_of(dim, more, T);
+    mesh_elem_gradients(m, on[side], g);
+    for (int a = 0; a <= dim; ++a)
+      for (int c = 0; c < dim; ++c)
+        dF[dim * v[a] + c] +=
+            volume * (sign * t[c] * dot(dim, p->normal, g + dim * a) +
+                      dot(dim, T[c], g + dim * a));
+  }
+  for (int k = 0; k < p->n && model_is_axisymmetric(r->m); ++k) {
+    const spot s = spot_at(m, p, k);
+    for (int i = 0; i < p->n; ++i)
+      dF[2 * p->node[i]] += s.weight * s.beyond * 2.0 * M_PI * s.b[i] * hoop;
+  }
+}
+
+static void add_interface(const run *r, const patch *p, int back,
+                          const goal_shared *to, double *dF) {
+  const int dim = r->msh->dim, ns = r->body.d.ns, on[2] = {p->elem, back};
+  const double volume = volume_beyond(r, p);
+  double t[3] = {0.0}, n[3] = {0.0}, jump[3] = {0.0}, T[3][3], e[6];
+  COPY(n, p->normal, dim);
+  for (int side = 0; side < 2; ++side) {
+    const double sign = side == 0 ? 1.0 : -1.0;
+    tensor_of(dim, r->result.stress + (size_t)ns * on[side], T);
+    for (int c = 0; c < dim; ++c) {
+      t[c] += 0.5 * dot(dim, T[c], n);
+      jump[c] += sign * slope_of(r->msh, on[side], r->now.u, c, n);
+    }
+    to->volume[on[side]] += sign * volume;
+  }
+  strain_of(dim, n, jump, e);
+  for (int side = 0; side < 2; ++side)
+    add_scaled(ns, -0.5 * volume, e, to->strain + (size_t)ns * on[side]);
+  add_shifted(r, p, on, t, e, dF);
+}
+
+status goal_add_interfaces(const run *r, const space_recovery *of, double *dF,
+                           const goal_shared *to) {
+  run seen = *r;
+  mesh sides;
+  int *back;
+  if (space_regions(of) < 2) return OK;
+  SCRATCH;
+  PASS(between_regions(r->msh, of, &sides, &back));
+  seen.msh = &sides;
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(&sides, &rings));
+  for (int f = 0; f < sides.n_face; ++f) {
+    const patch p = face_patch(&seen, &rings, f);
+    if (p.is_curved) add_interface(r, &p, back[f], to, dF);
+  }
+  return OK;
+}
+
+/* ---- means --------------------------------------------------------------- */
 
 /* The integral of u less its mean over the surface less that over a face; of a
  * volume, over what is beyond it. */

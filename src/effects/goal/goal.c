@@ -48,6 +48,7 @@ typedef struct goal_state {
   space_recovery *recovery; /* its own; NULL: not needed so far */
   long elastic_no;          /* of the run, that it is made of */
   goal_border border;
+  mesh bordered; /* the mesh with faces for all its border */
   goal_history before;
 } goal_state;
 
@@ -55,6 +56,7 @@ static status goals_new(run *r, void **self) {
   goal_state *own = *self;
   own->n = r->m->n.goal;
   PASS(goal_border_new(r->msh, &own->border));
+  PASS(goal_add_faces(r->msh, &own->border, &own->bordered));
   PASS_NEW(own->result, own->n);
   if (r->m->accuracy.goal_products)
     PASS_NEW(own->product, (size_t)own->n * r->msh->n_elem);
@@ -177,8 +179,11 @@ static status prepare(run *r, goal_state *own, shared *s) {
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);
   PASS(goal_add_boundary(r, s->lacks));
+  PASS_NEW_ALL(OF(s->form.of_all.volume, r->msh->n_elem),
+               OF(s->form.of_all.strain, (size_t)r->m->ns * r->msh->n_elem));
+  PASS(goal_add_interfaces(r, recovery, s->lacks, &s->form.of_all));
   PASS(goal_add_thermal(r, s->lacks, &s->rest));
-  s->form.rest = s->rest;
+  s->form.of_all.rest = s->rest;
   PASS_NEW_REALS(r->nodes.n_row, &s->j, &s->more, &s->psi, &s->y_c, &s->moved);
   if (r->nodes.n_row == 0) return OK;
   PASS(set_moved(r, own, s));
@@ -534,8 +539,7 @@ static status find_goal(run *r, goal_state *own, shared *s, int id) {
 }
 
 /* The time that all share counts with the first. */
-static status find_goals(run *r, void *self) {
-  goal_state *own = self;
+static status find_all(run *r, goal_state *own) {
   SCRATCH;
   shared s = {.estimator = NULL};
   double cpu = timer_cpu();
@@ -552,6 +556,16 @@ static status find_goals(run *r, void *self) {
   PASS(remember(r, own, &s));
   own->result[0].cpu += timer_cpu() - cpu;
   return OK;
+}
+
+/* What is curved need not be in a group. */
+static status find_goals(run *r, void *self) {
+  goal_state *own = self;
+  const mesh *msh = r->msh;
+  r->msh = &own->bordered;
+  const status found = find_all(r, own);
+  r->msh = msh;
+  return found;
 }
 
 static status keep(run *r, void *self, archive *a) {

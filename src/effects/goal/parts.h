@@ -14,6 +14,15 @@ typedef struct goal_mean {
   double factor; /* of the integral, sign included, 1/m2 */
 } goal_mean;
 
+/* What forms share; NULL: zero. */
+typedef struct goal_shared {
+  double *rest;   /* [3*n_elem] of goal_add_thermal */
+  double *volume; /* [n_elem] what interfaces beyond their chords give to an
+                     element, m3 */
+  double *strain; /* [ns*n_elem] of J that is an integral of stress : strain,
+                     what it has by them besides its density times that, m3 */
+} goal_shared;
+
 /* A quantity J at r->now, with its derivatives. */
 typedef struct goal_form {
   double value;
@@ -43,7 +52,7 @@ typedef struct goal_form {
   double held;        /* what forces of held nodes, in none of them, may be */
   double rough;       /* what the integral of a factor lacks, what a pressure or
                          a width is else than its mean */
-  const double *rest; /* of goal_add_thermal, borrowed; NULL: none */
+  goal_shared of_all; /* borrowed */
   goal_verdict why;   /* GOAL_RELIABLE: it has a value */
 } goal_form;
 
@@ -83,6 +92,10 @@ void goal_rule_point(int n, int k, int pieces, double *b);
 status goal_places(const run *r, int **where);
 /* Adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);
+/* The same of curved interfaces between regions, of which the chord moves a
+ * part from one to the other; adds to->volume, strain. ERR_MEMORY. */
+status goal_add_interfaces(const run *r, const space_recovery *of, double *dF,
+                           const goal_shared *to);
 int goal_load_varies(const load *l); /* 1: from place to place */
 /* volume[n_elem] += what of the body is beyond the faces of each element, m3.
  * ERR_MEMORY. */
@@ -103,6 +116,9 @@ typedef struct goal_border {
   double *angle; /* [n_node] of the body at the nodes, rad; in space NULL */
 } goal_border;
 status goal_border_new(const mesh *m, goal_border *b); /* support.c */
+/* boundary.c: *out is m with more faces, the sides of the border that are none:
+ * arrays of faces are new, all else is borrowed. ERR_MEMORY. */
+status goal_add_faces(const mesh *m, const goal_border *b, mesh *out);
 
 /* jumps.c */
 /* 1: no stress that is continuous at a node has the loads of two sides with

@@ -192,13 +192,28 @@ static void add_beyond(double part, goal_form *f) {
   f->beyond += fabs(part);
 }
 
+/* beyond[n_elem] m3, by curved surfaces and interfaces. */
+static status find_beyond(const run *r, const goal_form *f, double *beyond) {
+  PASS(goal_volumes_beyond(r, beyond));
+  if (f->of_all.volume != NULL)
+    add_scaled(r->msh->n_elem, 1.0, f->of_all.volume, beyond);
+  return OK;
+}
+
+/* With f->tau. */
+static void add_interfaces(const run *r, goal_form *f) {
+  const int n = r->m->ns * r->msh->n_elem;
+  if (f->of_all.strain != NULL)
+    add_beyond(cblas_ddot(n, f->tau, 1, f->of_all.strain, 1), f);
+}
+
 static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   const domain *d = &r->body.d;
   const mesh_group *of = &r->msh->group[g->group_id];
   const size_t ns = d->ns, c = g->component - GOAL_TENSOR;
   double whole = 0.0;
   OWNED_NEW(double, beyond, r->msh->n_elem);
-  PASS(goal_volumes_beyond(r, beyond));
+  PASS(find_beyond(r, f, beyond));
   for (int k = 0; k < of->n_item; ++k)
     whole += element_weight(d, of->item_id[k]);
   for (int k = 0; k < of->n_item; ++k) {
@@ -214,10 +229,11 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
     const size_t e = of->item_id[k];
     add_beyond(beyond[e] / whole * (r->result.stress[ns * e + c] - f->value),
                f);
-    if (f->rest != NULL)
-      f->curved -= goal_thermal_rest(r, (int)e, f->rest, (int)c) / whole;
+    if (f->of_all.rest != NULL)
+      f->curved -= goal_thermal_rest(r, (int)e, f->of_all.rest, (int)c) / whole;
   }
   f->has_tau = 1;
+  add_interfaces(r, f);
   return OK;
 }
 
@@ -236,18 +252,19 @@ static status energy_density(const run *r, int elem_id, double *density) {
 
 static status set_energy(const run *r, const goal_card *g, goal_form *f) {
   OWNED_NEW(double, beyond, r->msh->n_elem);
-  PASS(goal_volumes_beyond(r, beyond));
+  PASS(find_beyond(r, f, beyond));
   for (int e = 0; e < r->msh->n_elem; ++e) {
     double density = 0.0;
     if (beyond[e] != 0.0) PASS(energy_density(r, e, &density));
     add_beyond(beyond[e] * density, f);
-    if (f->rest != NULL)
-      f->curved -=
-          cblas_ddot(3, r->result.stress + r->m->ns * e, 1, f->rest + 3 * e, 1);
+    if (f->of_all.rest != NULL)
+      f->curved -= cblas_ddot(3, r->result.stress + r->m->ns * e, 1,
+                              f->of_all.rest + 3 * e, 1);
   }
   f->value = r->now.energy.strain;
   f->has_tau = f->is_square = 1;
   COPY(f->tau, r->result.stress, (size_t)r->m->ns * r->msh->n_elem);
+  add_interfaces(r, f);
   return OK;
 }
 

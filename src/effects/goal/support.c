@@ -16,6 +16,7 @@
 
 /* Of a face that is a chord of a smooth surface, rad: half of what it turns. */
 static const double SLACK = 0.27;
+static const double TURN = 1e-6; /* rad, of a border that is straight */
 
 /* ---- what supports prescribe between the nodes --------------------------- */
 
@@ -123,6 +124,13 @@ static void add_region(int region, double angle, joint *j) {
  * in the angle "whole". */
 static int is_bent(int n, double angle, double whole) {
   return n > 2 || fabs(angle - 0.5 * whole) > 2.0 * SLACK;
+}
+
+/* 1: the border at a node turns inwards, or inside the interface of two regions
+ * turns. */
+static int is_hollow(double angle, const joint *j) {
+  if (angle < 2.0 * M_PI - TURN) return angle > M_PI + TURN;
+  return j->n == 2 && fabs(j->angle - M_PI) > TURN;
 }
 
 /* ---- where they end, in the plane ---------------------------------------- */
@@ -447,6 +455,8 @@ static status mark_plane(const run *r, const goal_border *border,
          is_point(r->body.d.fixed + 2 * i, &c[i]) ||
          is_singular_joint(&c[i], &at[i])))
       s->ends[i] |= GOAL_END_OF_SUPPORT;
+  for (int i = 0; i < m->n_node; ++i)
+    if (is_hollow(border->angle[i], &at[i])) s->ends[i] |= GOAL_HOLLOW;
   return OK;
 }
 
