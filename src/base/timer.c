@@ -42,7 +42,7 @@ static void charge(void) {
   last_bytes = bytes;
 }
 
-void timer_enter(stage s) {
+void timer_enter_as(stage s, unsigned how) {
   if (whole > 0) {
     ++inner;
     return;
@@ -50,18 +50,11 @@ void timer_enter(stage s) {
   assert(depth < DEPTH);
   charge();
   open_stage[depth++] = s;
-  ++cost[s].calls;
+  cost[s].calls += (how & STAGE_NO_CALL) == 0;
+  if (how & STAGE_WHOLE) whole = depth;
 }
 
-void timer_enter_whole(stage s) {
-  timer_enter(s);
-  if (whole == 0) whole = depth;
-}
-
-void timer_enter_more(stage s) {
-  if (whole == 0) --cost[s].calls;
-  timer_enter_whole(s);
-}
+void timer_enter(stage s) { timer_enter_as(s, 0); }
 
 void timer_leave(stage s) {
   if (inner > 0) {

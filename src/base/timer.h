@@ -62,11 +62,12 @@ typedef struct stage_cost {
 } stage_cost;
 
 void timer_enter(stage s);
-/* The same for a shadow run: stages entered before it is left are part of it,
- * their own costs and calls are not counted. */
-void timer_enter_whole(stage s);
-/* The same, and no call of the stage either. */
-void timer_enter_more(stage s);
+enum {
+  STAGE_WHOLE = 1,  /* a shadow run: stages entered before it is left are part
+                       of it, their own costs and calls are not counted */
+  STAGE_NO_CALL = 2 /* what prepares calls of the stage */
+};
+void timer_enter_as(stage s, unsigned how); /* the same; bits of these */
 void timer_leave(stage s); /* must match the last timer_enter */
 /* TIMED(s): stage s, none if STAGE_NONE, from here to the end of the block. */
 #define TIMED(s)                                                   \

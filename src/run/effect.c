@@ -14,18 +14,13 @@ void *effect_state(const effect_list *list, const effect_ops *e) {
   return NULL;
 }
 
-typedef enum { PREPARES, ACTS } use; /* a call of the stage: what acts only */
+enum { PREPARES = STAGE_NO_CALL, ACTS = 0 };
 
-static void enter(const run *r, int k, use u) {
+static void enter(const run *r, int k, unsigned how) {
   const effect_ops *e = r->effects.on[k].ops;
   const stage s = r->effects.on[k].stage;
   if (s == STAGE_NONE || e->inside) return;
-  if (u == PREPARES)
-    timer_enter_more(s);
-  else if (e->shadow)
-    timer_enter_whole(s);
-  else
-    timer_enter(s);
+  timer_enter_as(s, how | (e->shadow ? STAGE_WHOLE : 0));
 }
 
 static void leave(const run *r, int k) {

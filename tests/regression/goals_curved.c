@@ -115,11 +115,10 @@ static double of_hole(double r) {
   return -4e-3 / 3.0 * 1.3 * (0.4 * r + 1 / r);
 }
 
-START_TEST(hole_without_a_name_is_round) {
+TEST(hole_without_a_name_is_round) {
   check_body(RING UNNAMED, ", TYPE=CPE3", "", "*DSLOAD\nOUTER, P, 100.\n",
              &(closed){of_hole, M_2_PI, -M_PI * 1.3 / 1.4, 0.15});
 }
-END_TEST
 
 /* In the place of the hole a core, BODY, of a tenth of the stiffness. */
 static double of_core(double r) { return -5.2e-5 / 0.82 * (r + 1.8 / r); }
@@ -127,7 +126,7 @@ static double of_ball_core(double r) {
   return -3.1e-4 / 7.0 * (r + 39.0 / 31.0 / (r * r));
 }
 
-START_TEST(interface_of_materials_is_round) {
+TEST(interface_of_materials_is_round) {
   static const closed on[] = {
       {of_core, M_2_PI, -M_PI * 2.9 / 2.8, 0.25},
       {of_ball_core, M_PI_4, -8 * M_PI * 287.0 / 280.0, 0.6}};
@@ -146,11 +145,10 @@ START_TEST(interface_of_materials_is_round) {
              "Physical Curve(\"LEFT\") = {3, 6};\n",
              section, "", "*DSLOAD\nOUTER, P, 100.\n", &on[_i]);
 }
-END_TEST
 
 /* A hole of three edges in its quarter in a wide disc: the bubbles see half to
  * 0.8 of the error, and recovered stresses that. */
-START_TEST(few_elements_round_a_hole) {
+TEST(few_elements_round_a_hole) {
   job j = job_begin("hole");
   job_write(
       &j, "hole.geo", "%s",
@@ -176,7 +174,6 @@ START_TEST(few_elements_round_a_hole) {
   dat_free(&t);
   job_end(&j);
 }
-END_TEST
 
 /* A disc with a hole that turns, rho omega^2 = 1000 in plane stress, and under
  * its weight of 1000: the mean of stress_yy is that of 1000 y over the body.

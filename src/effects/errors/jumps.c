@@ -222,7 +222,7 @@ static status look_for_jump(run *r, void *self, double t) {
       lost)
     return OK;
   if (r->step->kind != STEP_QUASISTATIC) return OK;
-  timer_enter_whole(STAGE_CHECK);
+  timer_enter_as(STAGE_CHECK, STAGE_WHOLE);
   NEW(workspace, 2 * r->nodes.n_c);
   TRY(load_change(r, workspace, &change));
   int leaps = distance(r, r->now.uc, r->old.uc, workspace) > SUSPECT * change;

@@ -173,7 +173,7 @@ static status try_path(run *r, void *self, double t) {
   paths *own = self;
   double cpu = timer_cpu();
   if (!r->step->accuracy.time || !path_exists(r)) return OK;
-  timer_enter_whole(STAGE_TIME_ERROR);
+  timer_enter_as(STAGE_TIME_ERROR, STAGE_WHOLE);
   r->course.shadow = 1;
   if (own->path != NULL && own->path->at.start.t != r->old.t) restart(own);
   TRY(path_begin(r, own));

@@ -76,7 +76,7 @@ status history_check(const model *m, const mesh *msh,
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};
   if (n > 1 && !any) PASS(change_supports(m, msh, &any));
   if (n == 0 || !any) return OK;
-  timer_enter_more(STAGE_SURFACE);
+  timer_enter_as(STAGE_SURFACE, STAGE_WHOLE | STAGE_NO_CALL);
   status st = run_new(&r, effects);
   if (st == OK) st = check_steps(&r, n, look);
   timer_leave(STAGE_SURFACE);

@@ -242,7 +242,7 @@ static status find_motions(const run *r, int *n, free_motion **list) {
     rubs[i] =
         rule_has_friction(friction_in_force(r->m, run_step_id(r), i)) != 0;
   d.rubs = rubs;
-  timer_enter_more(STAGE_ORDERING);
+  timer_enter_as(STAGE_ORDERING, STAGE_NO_CALL);
   const status st = domain_free_motions(&d, n, list);
   timer_leave(STAGE_ORDERING);
   return st;
