@@ -3,9 +3,9 @@
  * that are used for reading, range checks, help, the echo of defaults and the
  * tests.
  *
- * A table ends with OPTION_END. Each row is written with OPTION_REAL and its
- * kin; the macro compares pointer types inside sizeof, so a row whose field has
- * another type does not compile.
+ * OPTIONS(table, row, ...) is a table. Each row is written with OPTION_REAL and
+ * its kin; the macro compares pointer types inside sizeof, so a row whose field
+ * has another type does not compile.
  */
 #pragma once
 
@@ -56,6 +56,8 @@ typedef struct option {
   {name, OPT_CHOICE, OPTION_OFFSET(struct_, field, int), 0, 0, initial, "-",  \
    choices, help}
 #define OPTION_END {NULL, OPT_INT, 0, 0, 0, NULL, NULL, NULL, NULL}
+#define OPTIONS(table, ...) \
+  static const option table[] = {__VA_ARGS__, OPTION_END}
 /* clang-format on */
 
 /* Row of that name (exact, upper case), or NULL. */

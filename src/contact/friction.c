@@ -153,7 +153,8 @@ typedef struct nonlocal {
   int mirror_x, mirror_y, mirror_z; /* average_mirror */
 } nonlocal;
 
-static const option nonlocal_options[] = {
+OPTIONS(
+    nonlocal_options,
     OPTION_REAL(nonlocal, radius, "RADIUS", DBL_MIN, DBL_MAX, NULL, "length",
                 "rho: the pressure is averaged over what is nearer"),
     OPTION_CHOICE(nonlocal, kernel, "KERNEL", KERNEL_WORDS, "BUMP",
@@ -172,8 +173,7 @@ static const option nonlocal_options[] = {
     OPTION_CHOICE(nonlocal, mirror_y, "MIRROR_Y", "NONE|MIN|MAX", "NONE",
                   "the same for y (z of an axisymmetric model)"),
     OPTION_CHOICE(nonlocal, mirror_z, "MIRROR_Z", "NONE|MIN|MAX", "NONE",
-                  "the same for z in 3-D"),
-    OPTION_END};
+                  "the same for z in 3-D"));
 
 /* The faces of a contact as a patch of the average. */
 typedef struct patch {

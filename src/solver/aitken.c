@@ -29,10 +29,9 @@ typedef struct aitken {
   int acceleration; /* acceleration_kind */
 } aitken;
 
-static const option aitken_options[] = {
-    OPTION_CHOICE(aitken, acceleration, "ACCELERATION", "AITKEN|ANDERSON|NONE",
-                  "AITKEN", "how the sweeps are combined"),
-    OPTION_END};
+OPTIONS(aitken_options, OPTION_CHOICE(aitken, acceleration, "ACCELERATION",
+                                      "AITKEN|ANDERSON|NONE", "AITKEN",
+                                      "how the sweeps are combined"));
 
 enum {
   SWEEPS = 20000, /* default limit */

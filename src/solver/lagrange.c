@@ -30,10 +30,10 @@ typedef struct lagrange {
 
 typedef enum { BY_NESTEROV, BY_NOTHING } acceleration_kind;
 
-static const option lagrange_options[] = {
-    OPTION_CHOICE(lagrange, acceleration, "ACCELERATION", "NESTEROV|NONE",
-                  "NESTEROV", "extrapolation of the forces between the steps"),
-    OPTION_END};
+OPTIONS(lagrange_options,
+        OPTION_CHOICE(lagrange, acceleration, "ACCELERATION", "NESTEROV|NONE",
+                      "NESTEROV",
+                      "extrapolation of the forces between the steps"));
 
 enum {
   STEPS = 100000, /* default limit */

@@ -38,10 +38,9 @@ typedef struct pcg {
 
 typedef enum { BY_FACE, BY_DIAGONAL } preconditioner_kind;
 
-static const option pcg_options[] = {
-    OPTION_CHOICE(pcg, preconditioner, "PRECONDITIONER", "FACE|DIAGONAL",
-                  "FACE", "of the conjugate gradients on a face"),
-    OPTION_END};
+OPTIONS(pcg_options,
+        OPTION_CHOICE(pcg, preconditioner, "PRECONDITIONER", "FACE|DIAGONAL",
+                      "FACE", "of the conjugate gradients on a face"));
 
 enum {
   STEPS = 20000,  /* default limit */

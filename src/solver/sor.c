@@ -20,15 +20,14 @@ typedef struct sor {
 typedef enum { SWEEP_FORWARD, SWEEP_BACKWARD, SWEEP_SYMMETRIC } sweep_order;
 typedef enum { FRICTION_DIRECT, FRICTION_FIXED_POINT } friction_update;
 
-static const option sor_options[] = {
-    OPTION_REAL(sor, omega, "OMEGA", 0, 1.999, "0", "-",
-                "relaxation factor; 0: chosen by the program"),
-    OPTION_CHOICE(sor, sweep, "SWEEP", "FORWARD|BACKWARD|SYMMETRIC", "FORWARD",
-                  "order in which the nodes are visited"),
-    OPTION_CHOICE(
-        sor, friction, "FRICTION", "DIRECT|FIXED_POINT", "DIRECT",
-        "sliding limit updated in the sweep, or around Tresca passes"),
-    OPTION_END};
+OPTIONS(sor_options,
+        OPTION_REAL(sor, omega, "OMEGA", 0, 1.999, "0", "-",
+                    "relaxation factor; 0: chosen by the program"),
+        OPTION_CHOICE(sor, sweep, "SWEEP", "FORWARD|BACKWARD|SYMMETRIC",
+                      "FORWARD", "order in which the nodes are visited"),
+        OPTION_CHOICE(
+            sor, friction, "FRICTION", "DIRECT|FIXED_POINT", "DIRECT",
+            "sliding limit updated in the sweep, or around Tresca passes"));
 
 enum {
   SWEEPS = 20000, /* default limit */

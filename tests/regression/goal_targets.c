@@ -353,8 +353,7 @@ TEST(msh_of_a_cylinder_is_refined) {
                               .n_number = 3,
                               .numbers = few};
   JOB j = job_begin("line");
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *m = mesh_file_from(&f, &source);
   ck_assert_msg(m != NULL, "%s", f.messages);
   PRINTED(path, "%s/line.msh", j.dir);

@@ -62,7 +62,7 @@ creep_end creep_case_run(const creep_case *c, const char *integrator, int n) {
       c->step);
   ck_assert_int_lt(length, (int)sizeof text);
   text_model s;
-  text_model_read(&s, text, block(solid));
+  s = text_model_read(text, block(solid));
   ck_assert_int_eq(s.st, OK);
   end.n_dof = s.msh->dim * s.msh->n_node;
   ck_assert_int_le(end.n_dof, 256);

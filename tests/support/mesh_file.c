@@ -9,9 +9,10 @@ static void must(int held, const char *what) {
   abort();
 }
 
-void mesh_file_open(mesh_file *f) {
-  memset(f, 0, sizeof *f);
-  folder_new(f->folder);
+mesh_file mesh_file_open(void) {
+  mesh_file f = {.answer = OK};
+  folder_new(f.folder);
+  return f;
 }
 
 void mesh_file_close(mesh_file *f) { folder_remove(f->folder); }

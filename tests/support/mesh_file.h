@@ -30,9 +30,9 @@ typedef struct mesh_file {
   int n_error;         /* errors of the last reading                       */
 } mesh_file;
 
-void mesh_file_open(mesh_file *f);  /* new folder                           */
+mesh_file mesh_file_open(void);     /* new folder                           */
 void mesh_file_close(mesh_file *f); /* removed with all in it               */
-/* MESH_FILE f: closed where the name ends. */
+/* MESH_FILE f = ...: closed where the name ends. */
 #define MESH_FILE ENDS_BY(mesh_file_close) mesh_file
 /* FOLDER/NAME; the same buffer at every call. */
 const char *mesh_file_path(const mesh_file *f, const char *name);

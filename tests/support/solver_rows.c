@@ -46,8 +46,7 @@ void case_cold(contact_case *c) {
 }
 
 void all_rows_solve(contact_case *c, const char *what, double bad) {
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     if (!row_handles(ops, &c->cp)) continue;
     case_cold(c);
     solver_report rep = solve_by(ops, c, 1e-11, c->u, c->r);

@@ -11,6 +11,10 @@ enum { PARAM_SIZE = 512 }; /* bytes, room for the options of a row            */
 
 /* Row i; AUTO (NULL) after the last. 0: no more. */
 int solver_row(int i, const solver_ops **ops);
+/* EACH_SOLVER(i, ops) {...}: for each row i. */
+#define EACH_SOLVER(i, ops) \
+  const solver_ops *ops;    \
+  for (int i = 0; solver_row(i, &ops); ++i)
 const char *row_name(const solver_ops *ops);
 /* 1: the row takes problems of this kind. */
 int row_handles(const solver_ops *ops, const contact_problem *cp);

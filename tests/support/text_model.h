@@ -17,7 +17,7 @@ typedef struct text_model {
 } text_model;
 
 /* Reads it; messages go to stdout if it fails. "msh" is then its own. */
-void text_model_read(text_model *s, const char *text, mesh *msh);
+text_model text_model_read(const char *text, mesh *msh);
 void text_model_close(text_model *s);
-/* TEXT_MODEL s: closed where the name ends. */
+/* TEXT_MODEL s = ...: closed where the name ends. */
 #define TEXT_MODEL ENDS_BY(text_model_close) text_model

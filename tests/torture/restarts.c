@@ -84,16 +84,15 @@ static void in_capitals(const char *name, char text[32]) {
 
 static void each_method(points *t, int few,
                         job (*make)(double, const char *, const char *)) {
-  const solver_ops *ops;
   int taken = 0;
   char name[32];
-  for (int i = 0; solver_row(i, &ops); ++i)
-    for (int m = 0; m < 2; ++m) {
-      if (!takes(i, few, friction[m])) continue;
-      in_capitals(row_name(ops), name);
-      job whole = make(friction[m], "", name), j = make(friction[m], "", name);
-      taken += stop_and_go_on(t, &whole, &j, name, friction[m]);
-    }
+  EACH_SOLVER(i, ops)
+  for (int m = 0; m < 2; ++m) {
+    if (!takes(i, few, friction[m])) continue;
+    in_capitals(row_name(ops), name);
+    job whole = make(friction[m], "", name), j = make(friction[m], "", name);
+    taken += stop_and_go_on(t, &whole, &j, name, friction[m]);
+  }
   ck_assert_int_ge(taken, 2);
 }
 

@@ -12,13 +12,12 @@ enum { PARAM_SIZE = 512 };
 static solver_report solve(contact_case *c, const char *name, double tol) {
   double param[PARAM_SIZE / sizeof(double)] = {0.0};
   const solver_ops *ops = solver_find(name);
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   solver_report rep;
   option_defaults(ops->options, param);
   solver_choice choice = {.ops = ops, .param = param, .tol = tol};
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
-  contact_solver_free(&s);
   return rep;
 }
 

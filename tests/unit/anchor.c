@@ -65,7 +65,6 @@ static void resultant(const double *x, const double *a, double sum[6]) {
 static void stand(int by_products) {
   double x[3 * NODES], load[6], floor_force[6];
   CONTACT_CASE c = truss(0.5, x);
-  const solver_ops *ops;
   for (int i = 0; i < NODES; ++i) {
     c.f[3 * i] = 1.0;
     c.f[3 * i + 1] = c.f[3 * i + 2] = 0.2 / sqrt(2.0);
@@ -73,7 +72,7 @@ static void stand(int by_products) {
   }
   resultant(x, c.f, load);
   operated_case *o = by_products ? operated_new(&c) : NULL;
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     if (o != NULL && ops != NULL && ops->entries != NULL) continue;
     case_cold(&c);
     solver_report rep = solve_by(ops, &c, 1e-11, c.u, c.r);
@@ -152,7 +151,6 @@ static contact_case block(double mu, double push, double shear) {
 /* Two blocks side by side, one pushed along the floor: six motions. */
 TEST(two_bodies_stand_apart) {
   CONTACT_CASE one = block(0.4, 1.0, 0.1), two = case_new(2, 34, 0.4);
-  const solver_ops *ops;
   int m = one.cp.m;
   for (int j = 0; j < 2 * m; ++j) {
     two.f[j] = (j / m == 0 || j % 2 == 0) * one.f[j % m];
@@ -161,7 +159,7 @@ TEST(two_bodies_stand_apart) {
         two.A[i + 2 * m * j] = one.A[i % m + m * (j % m)] * (1 + i / m);
   }
   two.cp.floating = 1;
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     case_cold(&two);
     solver_report rep = solve_by(ops, &two, 1e-10, two.u, two.r);
     ck_assert_msg(rep.outcome == CONVERGED, "%s", row_name(ops));
@@ -219,21 +217,20 @@ TEST(drift_is_told_as_a_ray) {
 
 /* On the floor and far above it. */
 TEST(factors_of_two_change_no_bit) {
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i)
-    for (int far = 0; far < 2; ++far) {
-      if (ops == NULL || (ops->handles & SOLVES_FLOATING)) continue;
-      CONTACT_CASE c = block(0.3, 1.0, 0.2), d = block(0.3, 1.0, 0.2);
-      for (int j = 0; j < c.cp.n; ++j) c.gap[j] = d.gap[j] = 30.0 * far;
-      case_units(&d, -13, 28);
-      case_cold(&c);
-      case_cold(&d);
-      solver_report one = solve_by(ops, &c, 1e-9, c.u, c.r);
-      solver_report two = solve_by(ops, &d, 1e-9, d.u, d.r);
-      ck_assert_int_eq(one.iterations, two.iterations);
-      for (int j = 0; j < c.cp.m; ++j)
-        ck_assert(d.u[j] == ldexp(c.u[j], -13) && d.r[j] == ldexp(c.r[j], 28));
-    }
+  EACH_SOLVER(i, ops)
+  for (int far = 0; far < 2; ++far) {
+    if (ops == NULL || (ops->handles & SOLVES_FLOATING)) continue;
+    CONTACT_CASE c = block(0.3, 1.0, 0.2), d = block(0.3, 1.0, 0.2);
+    for (int j = 0; j < c.cp.n; ++j) c.gap[j] = d.gap[j] = 30.0 * far;
+    case_units(&d, -13, 28);
+    case_cold(&c);
+    case_cold(&d);
+    solver_report one = solve_by(ops, &c, 1e-9, c.u, c.r);
+    solver_report two = solve_by(ops, &d, 1e-9, d.u, d.r);
+    ck_assert_int_eq(one.iterations, two.iterations);
+    for (int j = 0; j < c.cp.m; ++j)
+      ck_assert(d.u[j] == ldexp(c.u[j], -13) && d.r[j] == ldexp(c.r[j], 28));
+  }
 }
 
 TEST(refused_memory_is_given_back) {

@@ -31,7 +31,7 @@ static void read_steps(text_model *s, const char *steps) {
           "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
           "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n%s",
           steps);
-  text_model_read(s, text, square());
+  *s = text_model_read(text, square());
   ck_assert_int_eq(s->st, OK);
 }
 
@@ -177,7 +177,7 @@ static void read_in_space(text_model *s, const char *cards) {
           "*MATERIAL, NAME=M\n%s*STEP\n*QUASISTATIC\n1., 4.\n"
           "*BOUNDARY\nTOP, 1, 3\n*END STEP\n",
           cards);
-  text_model_read(s, text, make_grid_3d(n, length));
+  *s = text_model_read(text, make_grid_3d(n, length));
   ck_assert_int_eq(s->st, OK);
 }
 

@@ -46,7 +46,7 @@ TEST(what_is_kept_changes_no_answer) {
     int dim = 2 + k % 2;
     CONTACT_CASE c = case_any(dim, 12, 0.3, k / 2 % 2, 100u + (unsigned)k);
     solver_choice choice = {.tol = 1e-12};
-    contact_solver *s = NULL;
+    ENDS_BY(contact_solver_free) contact_solver *s = NULL;
     FREED double *u = calloc((size_t)c.cp.m, sizeof *u),
                  *r = calloc((size_t)c.cp.m, sizeof *r);
     ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
@@ -68,7 +68,6 @@ TEST(what_is_kept_changes_no_answer) {
       for (int i = 0; i < c.cp.m; ++i)
         ck_assert_double_eq_tol(c.r[i], r[i], 1e-8);
     }
-    contact_solver_free(&s);
   }
 }
 
@@ -212,16 +211,15 @@ TEST(saved_work_goes_on_to_the_same_bits) {
  * of a compliance of rank 1. */
 TEST(unfit_method_is_named_with_the_reason) {
   CONTACT_CASE c = case_any(2, 6, 0.5, 0, 5);
-  const solver_ops *ops;
   FREED double *W = calloc(12 * 12, sizeof *W);
   int unfit = 0;
   for (int j = 0; j < 12 * 12; ++j) W[j] = 1.0;
   c.cp.A = NULL;
   c.cp.W = W;
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     double param[PARAM_SIZE / sizeof(double)] = {0.0};
     solver_choice choice = {.ops = ops, .param = param, .tol = 1e-10};
-    contact_solver *s = NULL;
+    ENDS_BY(contact_solver_free) contact_solver *s = NULL;
     solver_report rep;
     if (ops == NULL || !(ops->handles & NEEDS_STIFFNESS)) continue;
     option_defaults(ops->options, param);
@@ -233,7 +231,6 @@ TEST(unfit_method_is_named_with_the_reason) {
     const char *said = strstr(contact_solver_log(s), ops->name);
     ck_assert_ptr_nonnull(said);
     ck_assert_ptr_nonnull(strstr(said, "the compliance is singular"));
-    contact_solver_free(&s);
     ++unfit;
   }
   ck_assert_int_ge(unfit, 1);
@@ -307,14 +304,13 @@ TEST(limit_holds_for_all_attempts_together) {
       double param[PARAM_SIZE / sizeof(double)] = {0.0};
       solver_choice choice = {
           .ops = rows[i], .param = param, .tol = 1e-14, .max_iter = limit};
-      contact_solver *s = NULL;
+      ENDS_BY(contact_solver_free) contact_solver *s = NULL;
       solver_report rep;
       option_defaults(rows[i]->options, param);
       ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
       ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
       ck_assert_msg(rep.iterations <= limit, "%s: %d of %d", rows[i]->name,
                     rep.iterations, limit);
-      contact_solver_free(&s);
     }
 }
 
@@ -322,13 +318,12 @@ TEST(limit_holds_for_all_attempts_together) {
 static void tried(const contact_problem *cp, double *u, double *r, int most,
                   solver_report *rep, char text[512]) {
   solver_choice choice = {.tol = 1e-10, .max_iter = most};
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   memset(r, 0, sizeof *r * (size_t)cp->m);
   memcpy(u, cp->f, sizeof *u * (size_t)cp->m);
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, cp, NULL, u, r, rep), OK);
   snprintf(text, 512, "%s", contact_solver_log(s));
-  contact_solver_free(&s);
 }
 
 /* The first methods that were tried are these. */
@@ -403,7 +398,7 @@ TEST(few_contacts_are_solved_by_sweeps) {
 static double after_one(const contact_case *c, const solver_ops *ops) {
   solver_choice choice = {.ops = ops, .tol = 1e-14, .max_iter = 1};
   unsigned char param[PARAM_SIZE] = {0};
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   solver_report rep;
   if (ops != NULL) option_defaults(ops->options, param);
   choice.param = param;
@@ -412,7 +407,6 @@ static double after_one(const contact_case *c, const solver_ops *ops) {
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
   ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
   ck_assert_double_eq(rep.residual, contact_residual(&c->cp, c->u, c->r));
-  contact_solver_free(&s);
   return rep.residual;
 }
 

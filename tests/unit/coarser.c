@@ -202,10 +202,9 @@ static trace run_on(const char *text, int cells, const coarser *from,
                     spoiler *spoil) {
   const int n[] = {6 * cells, 4 * cells};
   const double length[] = {6.0, 4.0};
-  TEXT_MODEL s;
   trace r = {.spoil = spoil};
   int unsettled = 0;
-  text_model_read(&s, text, make_grid_2d(n, length));
+  TEXT_MODEL s = text_model_read(text, make_grid_2d(n, length));
   ck_assert_int_eq(s.st, OK);
   ck_assert_int_eq(coarser_new(&r.kept), OK);
   r.n_dof = 2 * s.msh->n_node;

@@ -253,9 +253,8 @@ typedef struct all_rows {
 } all_rows;
 
 static void run_rows(int k, problem *p, all_rows *x, int *solved) {
-  const solver_ops *ops;
   const contact_case *c = &p->c;
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     if (c->cp.op != NULL && ops != NULL && ops->entries != NULL) continue;
     if (!run_row(ops, k, p, &x->list)) continue;
     solved[i] += p->kind != WEAK;
@@ -299,13 +298,12 @@ static void must_solve(const char *name, int solved, int tried) {
 /* The slices are tests of their own: the checks of one that fails name it. */
 TESTS(every_row_is_right_or_says_so, SLICES) {
   tally t = {0};
-  const solver_ops *ops;
   for (int k = _i; k < asked("PROTIS_PROBLEMS", 150); k += SLICES)
     run_problem(k, &t);
   ck_assert_int_ge(t.listed * 20, t.tried);
   ck_assert_int_ge(t.compared * 3, t.tried);
   ck_assert_int_le(t.others * 20, t.tried);
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     must_solve(row_name(ops), t.solved[i], t.tried);
     if (ops == NULL || ops->entries == NULL)
       must_solve(row_name(ops), t.by_products[i], t.operated);
@@ -320,14 +318,13 @@ TESTS(every_row_is_right_or_says_so, SLICES) {
 static int solves_planted(const solver_ops *ops, const planted *p, int k) {
   double param[PARAM_SIZE / sizeof(double)] = {0.0};
   solver_choice choice = {.ops = ops, .param = param, .tol = TOL_SOFT};
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   solver_report rep;
   if (ops != NULL) option_defaults(ops->options, param);
   memset(p->r, 0, sizeof *p->r * (size_t)p->cp.m);
   memcpy(p->u, p->q, sizeof *p->u * (size_t)p->cp.m);
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &p->cp, NULL, p->u, p->r, &rep), OK);
-  contact_solver_free(&s);
   if (rep.outcome != CONVERGED) return 0;
   double map = planted_map(p, p->u, p->r);
   ck_assert_msg(map <= CLAIM * TOL_SOFT, "%s: planted %d: natural map %g",
@@ -338,13 +335,12 @@ static int solves_planted(const solver_ops *ops, const planted *p, int k) {
 static void run_planted(int k, int *solved) {
   const int sizes[] = {6, 24, 45, unit_whole() ? 90 : 30};
   static const double mus[] = {0.1, 0.3, 0.7};
-  const solver_ops *ops;
   planted p = planted_new((planted_kind)((k + k / SLICES) % 4), 2 + k / 3 % 2,
                           sizes[k % 4], mus[k / 2 % 3], (unsigned long long)k);
   ck_assert_double_le(planted_map(&p, p.u, p.r), 1e-12);
-  for (int i = 0; solver_row(i, &ops); ++i)
-    if (ops == NULL || k % 4 < 2 || (ops->handles & SPARSE_COMPLIANCE))
-      solved[i] += solves_planted(ops, &p, k);
+  EACH_SOLVER(i, ops)
+  if (ops == NULL || k % 4 < 2 || (ops->handles & SPARSE_COMPLIANCE))
+    solved[i] += solves_planted(ops, &p, k);
   planted_free(&p);
 }
 
@@ -353,16 +349,15 @@ TESTS(planted_answer_of_many_bodies_is_found, SLICES) {
   enum { DRIFTS = 994 };
   const int most = asked("PROTIS_PROBLEMS", 150) / 6;
   int solved[MOST_ROWS] = {0}, tried = 0;
-  const solver_ops *ops;
   for (int k = _i; k < most; k += SLICES, ++tried) run_planted(k, solved);
   if (most <= DRIFTS && _i == DRIFTS % SLICES) {
     run_planted(DRIFTS, solved);
     ++tried;
   }
-  for (int i = 0; solver_row(i, &ops); ++i)
-    if (ops == NULL || ops == &proximal_solver)
-      ck_assert_msg(solved[i] == tried, "%s: %d of %d", row_name(ops),
-                    solved[i], tried);
+  EACH_SOLVER(i, ops)
+  if (ops == NULL || ops == &proximal_solver)
+    ck_assert_msg(solved[i] == tried, "%s: %d of %d", row_name(ops), solved[i],
+                  tried);
   points_end(&(points){.kind = "planted problems of bodies", .tried = tried});
 }
 

@@ -13,14 +13,13 @@ TEST(fixed_point_contracts_by_mu_over_its_critical_value) {
     const solver_ops *sor = solver_find("sor");
     set_option(sor, param, "FRICTION", "FIXED_POINT");
     solver_choice choice = {.ops = sor, .param = param, .tol = 1e-11};
-    contact_solver *s = NULL;
+    ENDS_BY(contact_solver_free) contact_solver *s = NULL;
     solver_report rep;
     ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
     ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_int_gt(rep.limit_updates, 2);
     ck_assert_double_eq_tol(rep.rate, mu / 1.8, 1e-6);
-    contact_solver_free(&s);
   }
 }
 
@@ -38,14 +37,13 @@ TEST(auto_solves_the_block_for_any_friction) {
 TEST(fallback_is_logged) {
   CONTACT_CASE c = case_published(unit_whole() ? 256 : 128, 100.0);
   solver_choice choice = {.tol = 1e-10};
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   solver_report rep;
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
   ck_assert_int_eq(rep.outcome, CONVERGED);
   ck_assert_ptr_nonnull(strstr(contact_solver_log(s), "newton: "));
   ck_assert_ptr_nonnull(strstr(contact_solver_log(s), "converged"));
-  contact_solver_free(&s);
 }
 
 /* A solver of Tresca problems that stops at a residual of 4e-11 after many

@@ -506,8 +506,7 @@ static mesh *disc_mesh(double size, int is_outside) {
                        "{ Surface{100}; };\n"
                      : "",
           is_outside ? ", 102" : "", size, is_outside ? 102 : 100);
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   mesh *m = mesh_file_text(&f, "disc.geo", text);
   ck_assert_msg(m != NULL, "%s", f.messages);
   return m;

@@ -77,10 +77,9 @@ static status picky_solve(const contact_problem *cp, const void *par,
 }
 
 static run_record run_deck(const char *text, double picky) {
-  TEXT_MODEL s;
   solver_ops ops = newton_solver;
   run_record r = {0};
-  text_model_read(&s, text, block());
+  TEXT_MODEL s = text_model_read(text, block());
   ck_assert_int_eq(s.st, OK);
   ops.solve = picky_solve;
   picky_step = picky;
@@ -205,14 +204,13 @@ TESTS(every_refused_request_is_reported, HISTORIES) {
       "*ACCURACY, MESH=YES, TIME=YES, THEORY=YES\n"
       "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, ENERGY, ZONES, LOOP, WEAR, "
       "GOALS, REACTIONS\n";
-  TEXT_MODEL s;
   run_record r = {0};
   PRINTED(whole, with_history[_i], "0.5");
   const char *begin = strstr(whole, "*STEP\n"), *at = strstr(whole, "*OUTPUT");
   PRINTED(text, "%.*s%s%.*s%s%s", (int)(begin - whole), whole,
           _i > 0 ? goals : "", (int)(at - begin), begin, _i > 0 ? errors : "",
           at);
-  text_model_read(&s, text, block());
+  TEXT_MODEL s = text_model_read(text, block());
   ck_assert_int_eq(s.st, OK);
   r.n_dof = 2 * s.msh->n_node;
   history_sink sink = {.ctx = &r, .increment = keep, .rejected = count};

@@ -224,8 +224,7 @@ TEST(ranges_and_defaults_are_those_of_the_manual) {
 static int is_told(const char *number, const char *cards) {
   FREED char *told = NULL;
   size_t size;
-  TEXT_MODEL s;
-  text_model_read(&s, cards, NULL);
+  TEXT_MODEL s = text_model_read(cards, NULL);
   FILE *out = open_memstream(&told, &size);
   message_print(s.log, out);
   fclose(out);

@@ -527,11 +527,12 @@ typedef struct trial_value {
   double A, S, tau;
 } trial_value;
 
-static const option trial_fields[] = {
-    OPTION_REAL(trial_value, A, "A", 0, 1e9, NULL, "1/(stress time)", "factor"),
-    OPTION_REAL(trial_value, S, "S", 1e-9, 1e9, NULL, "stress", "scale"),
-    OPTION_REAL(trial_value, tau, "tau", 1e-9, 1e9, "5", "time", "recovery"),
-    OPTION_END};
+OPTIONS(trial_fields,
+        OPTION_REAL(trial_value, A, "A", 0, 1e9, NULL, "1/(stress time)",
+                    "factor"),
+        OPTION_REAL(trial_value, S, "S", 1e-9, 1e9, NULL, "stress", "scale"),
+        OPTION_REAL(trial_value, tau, "tau", 1e-9, 1e9, "5", "time",
+                    "recovery"));
 
 static int trial_n_alpha(const law_card *law, int ns) { return 3; }
 

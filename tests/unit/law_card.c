@@ -16,7 +16,7 @@ static void read_deck(text_model *s, const char *elastic, const char *cards) {
           "%s\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
           "*END STEP\n",
           elastic, cards);
-  text_model_read(s, text, NULL);
+  *s = text_model_read(text, NULL);
 }
 
 static const law_card *law_of(const text_model *s) {

@@ -289,13 +289,12 @@ TEST(held_sided_and_smooth_nodes_agree_with_newton) {
     memcpy(u, c.u, (size_t)m * sizeof *u);
     solver_choice choice = {
         .ops = solver_find("newton"), .param = param, .tol = 1e-12};
-    contact_solver *s = NULL;
+    ENDS_BY(contact_solver_free) contact_solver *s = NULL;
     solver_report rep;
     ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
     memset(c.u, 0, (size_t)m * sizeof *u);
     memset(c.r, 0, (size_t)m * sizeof *u);
     ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
-    contact_solver_free(&s);
     double apart = 0.0, size = 0.0;
     for (int i = 0; i < m; ++i) {
       apart = fmax(apart, fabs(u[i] - c.u[i]));
@@ -500,11 +499,10 @@ TEST(compliance_form_gives_the_same_answer) {
     soft.W = W;
     soft.f = q;
     solver_choice choice = {.ops = &lemke_solver, .param = param, .tol = 1e-10};
-    contact_solver *s = NULL;
+    ENDS_BY(contact_solver_free) contact_solver *s = NULL;
     solver_report rep;
     ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
     ck_assert_int_eq(contact_solve(s, &soft, NULL, u, r, &rep), OK);
-    contact_solver_free(&s);
     ck_assert_msg(rep.outcome == CONVERGED, "%d: %s, residual %g", k,
                   outcome_text(rep.outcome), rep.residual);
     for (int i = 0; i < m; ++i) {

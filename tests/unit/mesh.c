@@ -117,8 +117,7 @@ static void check_order(const mesh *m) {
 __attribute__((constructor)) static void load(void) { mesh_gmsh_load(); }
 
 TEST(disc_in_frame_has_its_areas_normals_and_groups) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *m = mesh_file_text(&f, "disc.geo", disc_geo);
   ck_assert_msg(f.answer == OK && f.messages[0] == '\0', "%s", f.messages);
   ck_assert_int_eq(m->dim, 2);
@@ -147,8 +146,7 @@ TEST(disc_in_frame_has_its_areas_normals_and_groups) {
 }
 
 TEST(cubes_have_their_volumes_normals_and_groups) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *m = mesh_file_text(&f, "cubes.geo", cubes_geo);
   ck_assert_msg(f.answer == OK && f.messages[0] == '\0', "%s", f.messages);
   ck_assert_int_eq(m->dim, 3);
@@ -182,8 +180,7 @@ static void check_formats(const char *geo) {
   static const char *const name[] = {"a22.msh", "b22.msh", "a41.msh",
                                      "b41.msh"};
   static char text[8192];
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   int n = snprintf(text, sizeof text, "%s\nMesh %d;\n", geo,
                    strstr(geo, "Volume") != NULL ? 3 : 2);
   for (int i = 0; i < 4; ++i)
@@ -209,8 +206,7 @@ TEST(all_formats_give_the_same_mesh_2d) { check_formats(disc_geo); }
 TEST(all_formats_give_the_same_mesh_3d) { check_formats(cubes_geo); }
 
 TEST(meshing_twice_gives_the_same_bytes) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   const mesh_number n = {"N", 7.0, 0};
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
   OWNED mesh *a = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
@@ -226,8 +222,7 @@ TEST(meshing_twice_gives_the_same_bytes) {
 /* Numbers of the deck: by name, to full precision, also if the .geo gives the
  * constant a label; other names are of no effect. */
 TEST(numbers_reach_the_geometry) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   static const char geo[] =
       "DefineConstant[ W = {1, Name \"Shape/W\"}, H = 1 ];\n"
       "Point(1) = {0,0,0}; Point(2) = {W,0,0}; Point(3) = {W,H,0};\n"
@@ -247,8 +242,7 @@ TEST(numbers_reach_the_geometry) {
 
 /* Sizes 0.05 in the quarter x, y < 0, 0.5 elsewhere, lengths scaled by 10. */
 TEST(sizes_reach_the_geometry) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
   OWNED mesh *old = mesh_file_read(&f, "d.geo", 10.0, 0, NULL);
   ck_assert_msg(old != NULL, "%s", f.messages);
@@ -282,8 +276,7 @@ TEST(sizes_reach_the_geometry) {
 }
 
 TEST(scale_by_a_power_of_two_changes_no_digit) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   mesh_file_write(&f, "c.geo", cubes_geo, strlen(cubes_geo));
   OWNED mesh *a = mesh_file_read(&f, "c.geo", 1.0, 0, NULL);
   for (int power = -300; power <= 300; power += 150) {
@@ -328,8 +321,7 @@ static char *square_text(int pass) {
 }
 
 TEST(order_does_not_depend_on_the_numbers_of_the_file) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *a = mesh_file_text(&f, "a.msh", square_text(0));
   OWNED mesh *b = mesh_file_text(&f, "b.msh", square_text(1));
   ck_assert_msg(a != NULL && b != NULL, "%s", f.messages);
@@ -341,8 +333,7 @@ TEST(order_does_not_depend_on_the_numbers_of_the_file) {
 
 /* Two nodes so close that they share a cell of the curve. */
 TEST(order_of_close_nodes_is_that_of_their_coordinates) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *a = mesh_file_text(
       &f, "a.msh",
       MSH("1\n2 1 \"B\"\n", "4\n1 0 0 0\n2 1e-8 0 0\n3 1 0 0\n4 0 1 0\n",
@@ -359,8 +350,7 @@ TEST(order_of_close_nodes_is_that_of_their_coordinates) {
 /* gmsh leaves flat triangles between the nodes of a straight line, some on each
  * other: the triangle beyond them is cut instead. */
 TEST(flat_triangles_on_a_line_are_cut) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   mesh *m = mesh_file_text(
       &f, "a.msh",
       MSH("1\n2 1 \"B\"\n",
@@ -390,8 +380,7 @@ TEST(flat_triangles_on_a_line_are_cut) {
 /* Neighbours along the curve are near: the mean jump between elements that
  * follow each other is a few nodes, against some 100 row by row. */
 TEST(neighbours_are_close_in_memory) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   const mesh_number n = {"N", 30.0, 0};
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
   OWNED mesh *m = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
@@ -408,8 +397,7 @@ TEST(neighbours_are_close_in_memory) {
 }
 
 TEST(bodies_are_the_connected_parts) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *m = mesh_file_text(
       &f, "two.msh",
       MSH("1\n2 1 \"B\"\n",
@@ -431,8 +419,7 @@ TEST(bodies_are_the_connected_parts) {
 }
 
 TEST(groups_are_found_by_name_and_the_nearest_is_offered) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *m = mesh_file_text(&f, "disc.geo", disc_geo);
   ck_assert_ptr_null(mesh_find_group(m, "FRAMES"));
   ck_assert_ptr_null(mesh_find_group(m, "rim"));
@@ -451,8 +438,7 @@ static const char small_msh[] =
 /* Parent and child go on counting: each request is refused on one side. */
 TEST(reader_gives_back_all_when_refused) {
   static const char merge[] = "Merge \"m.msh\";\n";
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
   mesh_file_write(&f, "m.geo", merge, sizeof merge - 1);
   const mesh_source source = {.file = mesh_file_path(&f, "m.geo"), .scale = 1};
@@ -462,8 +448,7 @@ TEST(reader_gives_back_all_when_refused) {
 }
 
 TEST(builder_gives_back_all_when_refused) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   mesh_file_write(&f, "m.msh", small_msh, sizeof small_msh - 1);
   OWNED raw_mesh *raw = NULL;
   ck_assert_int_eq(msh_read(mesh_file_path(&f, "m.msh"), &raw), OK);
@@ -488,8 +473,7 @@ TEST(builder_gives_back_all_when_refused) {
 }
 
 TEST(bodies_give_back_all_when_refused) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *m = mesh_file_text(&f, "m.msh", small_msh);
   ck_assert_ptr_nonnull(m);
   size_t before = memory_in_use();

@@ -242,8 +242,7 @@ static void check_message(mesh_file *f, const bad_mesh *c) {
 
 TEST(every_error_has_its_text_and_no_mesh) {
   mesh_gmsh_load();
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   size_t before = memory_in_use();
   int descriptors = count_descriptors();
   for (size_t i = 0; i < sizeof errors / sizeof *errors; ++i) {
@@ -260,8 +259,7 @@ TEST(every_error_has_its_text_and_no_mesh) {
 
 TEST(every_remark_has_its_text_and_a_mesh) {
   mesh_gmsh_load();
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   for (size_t i = 0; i < sizeof remarks / sizeof *remarks; ++i) {
     OWNED mesh *m = mesh_file_text(&f, remarks[i].name, remarks[i].text);
     check_message(&f, &remarks[i]);
@@ -281,8 +279,7 @@ TEST(flatness_has_no_unit) {
                {1e6, 1e-4, 1},
                {1e6, 1.2e-10, 0},
                {-1e6, 1.2e-10, 0}};
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   for (int power = -40; power <= 40; power += 40)
     for (int k = 0; k < 5; ++k) {
       double unit =
@@ -305,8 +302,7 @@ TEST(flatness_has_no_unit) {
  * coordinates of few digits touch, more is an overlap. */
 TEST(bodies_that_hardly_enter_each_other_touch) {
   static const double part[] = {0, 1e-9, 5e-7, 1e-5, 1e-3};
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   for (int k = 0; k < 5; ++k) {
     PRINTED(text,
             MSH(BODY,
@@ -322,8 +318,7 @@ TEST(bodies_that_hardly_enter_each_other_touch) {
 
 /* A triangle in an element of a square that has no side on its boundary. */
 TEST(body_inside_of_another_is_seen) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *m = mesh_file_text(
       &f, "t.msh",
       MSH(BODY,
@@ -339,8 +334,7 @@ TEST(body_inside_of_another_is_seen) {
 /* Two slivers along a slanted line far from the origin, on both sides of it,
  * without common nodes. */
 TEST(bodies_that_touch_do_not_overlap) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   for (int k = 0; k < 24; ++k) {
     double a = 0.1 + k, c = cos(a), s = sin(a), far = k % 2 ? 1e6 : 0.0;
     double h = k % 2 ? 1e-3 : 1e-6;
@@ -359,8 +353,7 @@ TEST(bodies_that_touch_do_not_overlap) {
 }
 
 TEST(files_that_cannot_be_read_are_told) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   mesh_file_read(&f, "missing.msh", 1.0, 0, NULL);
   ck_assert_int_eq(f.answer, ERR_FILE);
   ck_assert_ptr_nonnull(strstr(f.messages, "No such file or directory"));

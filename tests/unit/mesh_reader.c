@@ -19,8 +19,7 @@ static const char good_msh[] = MSH(BODY, SQUARE, "2\n" TWO);
 __attribute__((constructor)) static void load(void) { mesh_gmsh_load(); }
 
 TEST(good_file_is_read_after_bad_ones) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   static const char *const bad[] = {
       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\nrubbish\n$EndNodes\n",
       "$MeshFormat\n4.1 1 8\nrubbish\n$EndRubbish\n"};
@@ -49,8 +48,7 @@ TEST(reader_that_dies_is_told) {
        "Physical Surface(1)={1};\n",
        "gmsh", ERR_MESH},
   };
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     ck_assert_ptr_null(mesh_file_text(&f, "dies.geo", cases[i].geo));
     ck_assert_int_eq(f.answer, cases[i].answer);
@@ -85,8 +83,7 @@ static pid_t told_process(const char *path) {
 /* A program that is killed leaves no mesher: here the shell below it lives
  * until the mesher does not. */
 TEST(reader_dies_with_the_program) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   PRINTED(path, "%s/pid", f.folder);
   PRINTED(text,
           "SystemCall \"exec > %s 2>&1; echo $PPID; while kill -0 $PPID; do "
@@ -114,8 +111,7 @@ static void on_alarm(int signal) { (void)signal; }
 /* Signals that the program handles must not break the reading, and what is
  * ignored by the program (SIGCHLD) must not lose the mesh. */
 TEST(signals_do_not_disturb) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   struct sigaction often = {.sa_handler = on_alarm}; /* no SA_RESTART */
   ck_assert_int_eq(sigaction(SIGALRM, &often, NULL), 0);
   static const char wait_geo[] =
@@ -137,8 +133,7 @@ TEST(want_of_memory_in_gmsh_is_told) {
 #if defined(__SANITIZE_ADDRESS__)
   return; /* it needs terabytes of addresses itself */
 #endif
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   static const char geo[] = PLATE
       "// Merge: tests/preload leaves it to gmsh\n"
       "Transfinite Curve{1:4}=1200; Transfinite Surface{1};"
@@ -181,8 +176,7 @@ TEST(want_of_memory_is_never_taken_for_a_bad_mesh) {
 #if defined(__SANITIZE_ADDRESS__)
   return;
 #endif
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   write_square(&f, "large.msh", unit_whole() ? 400 : 200);
   PRINTED(geo, "Merge \"%s/large.msh\";\n", f.folder);
   mesh_file_write(&f, "large.geo", geo, strlen(geo));
@@ -207,8 +201,7 @@ TEST(want_of_memory_is_never_taken_for_a_bad_mesh) {
 
 /* What gmsh prints does not reach the user. */
 TEST(nothing_is_printed) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   fflush(NULL);
   int out = dup(1), err = dup(2);
   FILE *log = tmpfile();
@@ -235,8 +228,7 @@ TEST(nothing_is_printed) {
  * effect; the home is left as it is. */
 TEST(geometry_alone_makes_the_mesh) {
   static const char *const hidden[] = {"g.geo.opt", ".gmshrc", ".gmsh-options"};
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   PRINTED(ran, "%s", mesh_file_path(&f, "ran"));
   PRINTED(text, "Mesh.ElementOrder = 2; SystemCall \"touch %s\";\n", ran);
   for (int i = 0; i < 3; ++i)
@@ -263,8 +255,7 @@ TEST(geometry_alone_makes_the_mesh) {
 TEST(options_of_merged_files_are_refused) {
   static const char *const ways[] = {"Include \"in.geo\";", "Merge \"in.geo\";",
                                      "Merge StrCat(\"in\", \".geo\");"};
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   mesh_file_write(&f, "in.geo", PLATE, strlen(PLATE));
   mesh_file_write(&f, "in.geo.opt", "Mesh.ElementOrder = 2;\n", 23);
   for (int i = 0; i < 3; ++i) {
@@ -283,8 +274,7 @@ TEST(files_without_a_name_may_have_any_word) {
       "Merge StrCat(\"x\", \".geo\"); Include \"in.geo\"; Printf(\"a\");",
       "Merge\"x.msh\"; Printf(\"a\"); Include \"in.geo\";",
       "Include \"none.geo\"; Include \"in.geo\"; Printf(\"a\");"};
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   mesh_file_write(&f, "in.geo", PLATE, strlen(PLATE));
   for (int i = 0; i < 4; ++i) {
     geo_text g;
@@ -300,8 +290,7 @@ TEST(files_without_a_name_may_have_any_word) {
 
 /* Pipes do not take the place of standard streams. */
 TEST(closed_streams_do_not_disturb) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   int kept[3];
   for (int i = 0; i < 3; ++i) {
     kept[i] = dup(i);
@@ -325,8 +314,7 @@ static void leave_a_file(void) {
 
 /* Handlers of the program belong to the program, also if gmsh calls exit. */
 TEST(exit_of_gmsh_runs_no_handler_of_the_program) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   snprintf(left_behind, sizeof left_behind, "%s", mesh_file_path(&f, "left"));
   ck_assert_int_eq(atexit(leave_a_file), 0);
   ck_assert_ptr_null(mesh_file_text(&f, "exit.geo", "Exit;\n"));

@@ -37,7 +37,7 @@ static void set_param(const variant *v, double *param) {
 /* Solve from zero. */
 static solver_report solve_by(const variant *v, contact_case *c, double tol) {
   double param[PARAM_SIZE / sizeof(double)] = {0.0};
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   solver_report rep;
   set_param(v, param);
   solver_choice choice = {
@@ -46,7 +46,6 @@ static solver_report solve_by(const variant *v, contact_case *c, double tol) {
   memset(c->r, 0, (size_t)c->cp.m * sizeof *c->r);
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
-  contact_solver_free(&s);
   return rep;
 }
 

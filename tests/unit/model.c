@@ -84,13 +84,12 @@ static const load_case load_cases[] = {
 TEST(resultant_is_the_integral_of_the_load) {
   for (size_t k = 0; k < sizeof load_cases / sizeof *load_cases; ++k) {
     const load_case *c = &load_cases[k];
-    TEXT_MODEL s;
     PRINTED(text,
             HEAD
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s%s\n*STEP\n*STATIC\n"
             "%s*END STEP\n",
             c->section[0] ? ", " : "", c->section, c->cards);
-    text_model_read(&s, text, c->dim == 2 ? square() : box());
+    TEXT_MODEL s = text_model_read(text, c->dim == 2 ? square() : box());
     ck_assert_int_eq(s.st, OK);
     FREED double *F = calloc((size_t)(c->dim * s.msh->n_node), sizeof *F);
     ck_assert_int_eq(load_forces(s.m, s.msh, &s.m->steps[0], 1.0, F), OK);
@@ -111,9 +110,7 @@ static double point_force(const text_model *s, int step_id, double t) {
 }
 
 TEST(loads_ramp_stay_change_and_end) {
-  TEXT_MODEL s;
-  text_model_read(
-      &s,
+  TEXT_MODEL s = text_model_read(
       HEAD
       "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
       "*AMPLITUDE, NAME=UP\n0., 0., 1., 1., 3., 5.\n"
@@ -153,7 +150,6 @@ TEST(expressions_have_the_coordinates_of_the_section) {
               {"", "CAX3", "10*q", NAN}};
   static const double at[3] = {2, 3, 0};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-    TEXT_MODEL s;
     PRINTED(text,
             "%s" HEAD
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
@@ -164,7 +160,7 @@ TEST(expressions_have_the_coordinates_of_the_section) {
             "*STEP\n*STATIC\n*DSLOAD\nBOTTOM, P, \"%s\"\n*END STEP\n",
             rows[i].parameter, rows[i].type,
             strcmp(rows[i].type, "CAX3") == 0 ? "Z" : "Y", rows[i].expression);
-    text_model_read(&s, text, square());
+    TEXT_MODEL s = text_model_read(text, square());
     ck_assert_int_eq(s.st, isnan(rows[i].value) ? ERR_DECK : OK);
     if (s.st == OK) {
       const quantity *q = &s.m->steps[0].loads.item[0].value;
@@ -187,9 +183,8 @@ TEST(echo_reads_back_to_the_same_echo) {
       "*SOLVER, METHOD=SOR, TOL=1.D-9\n*PRINT, CONTACT\n*END STEP\n";
   char *echo[2] = {NULL, NULL};
   for (int pass = 0; pass < 2; ++pass) {
-    TEXT_MODEL s;
     size_t size;
-    text_model_read(&s, pass == 0 ? text : echo[0], square());
+    TEXT_MODEL s = text_model_read(pass == 0 ? text : echo[0], square());
     ck_assert_int_eq(s.st, OK);
     FILE *f = open_memstream(&echo[pass], &size);
     model_echo(f, s.m);
@@ -208,7 +203,6 @@ TEST(directions_have_unit_length) {
   static const char *const given[] = {"3E-200, 4E-200", "3E200, 4E200",
                                       "0.3, 0.4"};
   for (size_t k = 0; k < sizeof given / sizeof *given; ++k) {
-    TEXT_MODEL s;
     PRINTED(text,
             HEAD
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
@@ -216,7 +210,7 @@ TEST(directions_have_unit_length) {
             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
             "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2, 0.\n*END STEP\n",
             given[k]);
-    text_model_read(&s, text, square());
+    TEXT_MODEL s = text_model_read(text, square());
     ck_assert_int_eq(s.st, OK);
     const double *n = s.m->obstacles[0].direction;
     ck_assert_double_eq_tol(n[0], 0.6, 1e-15);
@@ -225,16 +219,15 @@ TEST(directions_have_unit_length) {
 }
 
 TEST(effects_are_what_the_deck_calls_for) {
-  TEXT_MODEL s;
-  text_model_read(&s,
-                  HEAD
-                  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-                  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-                  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-                  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.\n"
-                  "*STEP\n*STATIC\n*DSLOAD\nTOP, P, 1.\n*OUTPUT, HDF5=NO\n"
-                  "*ACCURACY, SOLVER=NO, MESH=NO\n*END STEP\n",
-                  square());
+  TEXT_MODEL s =
+      text_model_read(HEAD
+                      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+                      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+                      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+                      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.\n"
+                      "*STEP\n*STATIC\n*DSLOAD\nTOP, P, 1.\n*OUTPUT, HDF5=NO\n"
+                      "*ACCURACY, SOLVER=NO, MESH=NO\n*END STEP\n",
+                      square());
   ck_assert_int_eq(s.st, OK);
   ck_assert_uint_eq(s.m->effects, EFFECT_CONTACT | EFFECT_MESH);
 }
@@ -252,13 +245,12 @@ TEST(supports_that_move_are_found) {
                {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY, OP=NEW\n", 1},
                {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY\nLEFT, 1\n", 1}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    TEXT_MODEL s;
     PRINTED(text,
             HEAD
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
             "*STEP\n*STATIC\n%s*END STEP\n*STEP\n*STATIC\n%s*END STEP\n",
             cases[k].first, cases[k].last);
-    text_model_read(&s, text, square());
+    TEXT_MODEL s = text_model_read(text, square());
     ck_assert_int_eq(s.st, OK);
     ck_assert_msg((facts_moving_support(s.m) != NULL) == cases[k].moves, "%s",
                   text);
@@ -268,7 +260,6 @@ TEST(supports_that_move_are_found) {
 /* xx yy zz xy yz zx. */
 TEST(initial_strains_have_the_components_of_the_space) {
   for (int c = 0; c <= 7; ++c) {
-    TEXT_MODEL s;
     PRINTED(text,
             HEAD
             "*INELASTIC, LAW=MAXWELL\n2.\n"
@@ -277,7 +268,7 @@ TEST(initial_strains_have_the_components_of_the_space) {
             "*STEP\n*VISCO, INTEGRATOR=RK4\n0.5, 1.\n*BOUNDARY\nTOP, 1, "
             "3\n*END STEP\n",
             c);
-    text_model_read(&s, text, box());
+    TEXT_MODEL s = text_model_read(text, box());
     ck_assert_int_eq(s.st, c >= 1 && c <= 6 ? OK : ERR_DECK);
   }
 }
@@ -287,14 +278,13 @@ TEST(strains_of_the_start_need_a_value) {
   static const char *const cards[] = {
       "", "*INITIAL CONDITIONS, TYPE=INTERNAL\nBODY, 1, 1.E-3\n"};
   for (int k = 0; k < 2; ++k) {
-    TEXT_MODEL s;
     PRINTED(text,
             HEAD
             "*INELASTIC, LAW=KELVIN\n500., 3.\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
             "%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*END STEP\n",
             cards[k]);
-    text_model_read(&s, text, square());
+    TEXT_MODEL s = text_model_read(text, square());
     ck_assert_int_eq(s.st, OK);
     ck_assert_int_eq(facts_has_inelastic(s.m), k);
   }
@@ -316,7 +306,6 @@ TEST(zones_have_one_temperature) {
                {"BODY, 5.\nLEFT, 6.\n", "BODY, 20.\n", 2},
                {"BODY, 5.\nLEFT, 6.\n", "BODY, 20.\nLEFT, 7.\n", 2}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-    TEXT_MODEL s;
     mesh *msh = square();
     int zone[12], others = 0;
     ck_assert_int_eq(msh->n_elem, 12);
@@ -333,7 +322,7 @@ TEST(zones_have_one_temperature) {
                 ? "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
                 : "",
             cases[k].initial, cases[k].heat);
-    text_model_read(&s, text, msh);
+    TEXT_MODEL s = text_model_read(text, msh);
     ck_assert_int_eq(s.st, OK);
     ck_assert_int_eq(load_temperature_zones(s.m, s.msh, zone), OK);
     for (int i = 0; i < 12; ++i) others |= zone[i] != zone[0];
@@ -351,8 +340,7 @@ TEST(every_refused_request_is_reported) {
       "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*DSLOAD\nRIGHT, P, 1., A\n"
       "*SOLVER, METHOD=SOR\n*PRINT, CONTACT, NODES\n*END STEP\n"
       "*STEP\n*STATIC\n*END STEP\n";
-  TEXT_MODEL s;
-  text_model_read(&s, text, square());
+  TEXT_MODEL s = text_model_read(text, square());
   ck_assert_int_eq(s.st, OK);
   memory_free(s.m);
   size_t before = memory_in_use();

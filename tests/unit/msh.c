@@ -136,11 +136,10 @@ static void variant(int i, bytes *b) {
 }
 
 TEST(all_variants_give_the_same_mesh) {
-  MESH_FILE f;
+  MESH_FILE f = mesh_file_open();
   bytes b;
   OWNED mesh *first = NULL;
   const char *what;
-  mesh_file_open(&f);
   for (int i = 0; i < 6; ++i) {
     variant(i, &b);
     mesh_file_write(&f, "v.msh", b.data, b.n);
@@ -157,9 +156,8 @@ TEST(all_variants_give_the_same_mesh) {
 
 /* The last byte is a newline, the only one that may be lost. */
 TEST(file_cut_anywhere_is_refused) {
-  MESH_FILE f;
+  MESH_FILE f = mesh_file_open();
   bytes b;
-  mesh_file_open(&f);
   for (int i = 0; i < 6; ++i) {
     variant(i, &b);
     for (size_t cut = 1; cut + 1 < b.n; ++cut) {
@@ -174,8 +172,7 @@ TEST(file_cut_anywhere_is_refused) {
 /* Each line left out, then each twice; and each word in the last lines of the
  * nodes shortened to nothing by its line. */
 TEST(file_without_a_line_or_with_one_twice_is_refused) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   for (int i = 0; i < 2; ++i)
     for (const char *p = texts[i], *q; *p != '\0'; p = q) {
       char text[2048];
@@ -197,8 +194,7 @@ TEST(file_without_a_line_or_with_one_twice_is_refused) {
 TEST(counts_are_compared_with_the_file_first) {
   static const char *const word[] = {"999999999", "2305843009213693952",
                                      "9223372036854775807", "-1", "1e9"};
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   for (int i = 0; i < 2; ++i)
     for (size_t at = 0; texts[i][at] != '\0'; ++at) {
       if (at == 0 || strchr(" \n", texts[i][at - 1]) == NULL) continue;
@@ -215,9 +211,8 @@ TEST(counts_are_compared_with_the_file_first) {
 
 /* Each byte of the binary files with all bits turned, likewise. */
 TEST(damaged_bytes_take_no_memory) {
-  MESH_FILE f;
+  MESH_FILE f = mesh_file_open();
   bytes b;
-  mesh_file_open(&f);
   for (int i = 2; i < 6; ++i) {
     variant(i, &b);
     for (size_t at = 0; at < b.n; ++at) {
@@ -288,8 +283,7 @@ static const struct { const char *from, *to, *message; } damages[] = {
 /* clang-format on */
 
 TEST(damage_is_told_with_its_line) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   for (size_t i = 0; i < sizeof damages / sizeof *damages; ++i) {
     const char *whole = text_22, *at = strstr(whole, damages[i].from);
     if (at == NULL) at = strstr(whole = text_41, damages[i].from);
@@ -310,8 +304,7 @@ TEST(damage_is_told_with_its_line) {
 /* Other sections, CRLF, comments, empty lines, blanks and a byte order mark
  * change nothing. */
 TEST(what_is_no_mesh_is_passed_over) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   char text[4096];
   int n = snprintf(text, sizeof text,
                    "\xEF\xBB\xBF$Comments\n$Nodes are below\n$EndComments\n\n%s"
@@ -344,8 +337,7 @@ TEST(partitions_have_their_groups) {
       "7 2 5 2 1 2 0 0 0 1 1\n"
       "6 1 6 1 1 0 0 0 1 0 0 1 2 0\n5 2 5 1 1 0 0 0 1 1 0 1 1 1 6\n"
       "$EndPartitionedEntities\n";
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   char text[4096];
   const char *from = strstr(text_41, "$Entities"),
              *to = strstr(text_41, "$Nodes");
@@ -364,8 +356,7 @@ TEST(partitions_have_their_groups) {
 /* What gmsh -parametric writes: dimension and tag of the entity of a node, and
  * its place there. */
 TEST(parameters_of_nodes_are_passed_over) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   const char *what, *from = strstr(text_22, "$Nodes"),
                     *to = strstr(text_22, "$EndNodes");
   PRINTED(text,
@@ -386,8 +377,7 @@ TEST(tags_choose_the_groups) {
           "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n",
           "4\n7 2 5 1 5 2 3 4 1 2 3\n8 2 5 1 5 2 3 4 1 3 4\n"
           "9 1 4 -2 6 1 3 1 2\n10 15 2 3 1 1\n");
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
   mesh *m = mesh_file_text(&f, "tags.msh", tagged);
   ck_assert_msg(m != NULL, "%s", f.messages);
@@ -409,8 +399,7 @@ TEST(tags_choose_the_groups) {
 
 /* Correctly rounded, whatever the number of digits; with a sign or without. */
 TEST(coordinates_are_the_nearest_doubles) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   unsigned long random = 1;
   char line[65536];
   double wanted[1000];
@@ -438,8 +427,7 @@ TEST(coordinates_are_the_nearest_doubles) {
 }
 
 TEST(reader_gives_back_all_when_refused) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   for (int i = 0; i < 2; ++i) {
     mesh_file_write(&f, "m.msh", texts[i], strlen(texts[i]));
     raw_mesh *raw;

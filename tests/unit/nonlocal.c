@@ -21,12 +21,11 @@ static double apart(const contact_case *c, const double *u) {
 
 /* Every row must solve it and give the same answer. */
 static void all_agree(contact_case *c, const char *what) {
-  const solver_ops *ops;
   FREED double *u = calloc((size_t)c->cp.m, sizeof *u);
   case_cold(c);
   ck_assert_int_eq(solve_by(NULL, c, 1e-12, c->u, c->r).outcome, CONVERGED);
   memcpy(u, c->u, (size_t)c->cp.m * sizeof *u);
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     if (!row_handles(ops, &c->cp)) continue;
     case_cold(c);
     solver_report rep = solve_by(ops, c, 1e-11, c->u, c->r);

@@ -497,9 +497,8 @@ static const char penny_geo[] =
     "Physical Surface(\"PENNY\") = {100};\n";
 
 TEST(penny_in_a_mesh_of_gmsh) {
-  MESH_FILE f;
+  MESH_FILE f = mesh_file_open();
   opened o;
-  mesh_file_open(&f);
   mesh *m = mesh_file_text(&f, "penny.geo", penny_geo);
   ck_assert_msg(m != NULL && f.messages[0] == '\0', "%s", f.messages);
   open_groups(&o, m, 1, (const char *const[]){"PENNY"});

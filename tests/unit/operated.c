@@ -26,7 +26,7 @@ enum { VARIANTS = sizeof variants / sizeof *variants };
 static status solve(const variant *v, contact_case *c, int max_iter,
                     solver_report *rep, char *log) {
   double param[PARAM_SIZE / sizeof(double)] = {0.0};
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   solver_choice choice = {
       .ops = v->solver != NULL ? solver_find(v->solver) : NULL,
       .param = param,
@@ -37,7 +37,6 @@ static status solve(const variant *v, contact_case *c, int max_iter,
   status st = contact_solver_new(&choice, &s);
   if (st == OK) st = contact_solve(s, &c->cp, NULL, c->u, c->r, rep);
   if (st == OK && log != NULL) snprintf(log, 1024, "%s", contact_solver_log(s));
-  contact_solver_free(&s);
   return st;
 }
 

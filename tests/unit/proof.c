@@ -316,7 +316,7 @@ TEST(large_sparse_compliance_is_not_searched) {
          *r = calloc(M, sizeof *r), param[64] = {0.0};
   const solver_ops *sor = solver_find("sor");
   OWNED sparse_blocks *W = NULL;
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   solver_report rep;
   int n = 0;
   for (int i = 0; i < M; ++i)
@@ -339,7 +339,6 @@ TEST(large_sparse_compliance_is_not_searched) {
   memory_limit(SIZE_MAX, "");
   ck_assert_msg(st == OK, "%s", status_message());
   ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
-  contact_solver_free(&s);
   free(f);
   free(u);
   free(r);

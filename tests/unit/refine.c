@@ -146,8 +146,7 @@ static double worst_shape(const mesh *m) {
  */
 
 TEST(square_is_refined_to_its_sizes) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *grid = make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8});
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
   OWNED mesh *m = read_again(&f, grid, NULL),
@@ -186,8 +185,7 @@ TEST(square_is_refined_to_its_sizes) {
 /* The neighbours of elements that are bisected are bisected at their longest
  * edge first, or they would get ever sharper. */
 TEST(angles_keep_half_of_the_smallest) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *grid = make_grid_2d((int[]){3, 12}, (double[]){1.0, 0.8});
   for (int i = 0; i < grid->n_node; ++i)
     grid->x[2 * i] += 0.9 * grid->x[2 * i + 1];
@@ -200,9 +198,8 @@ TEST(angles_keep_half_of_the_smallest) {
 
 /* Nor is a mesh whose elements, of 0.277, are all a little too large kept. */
 TEST(nothing_gets_larger) {
-  MESH_FILE f;
+  MESH_FILE f = mesh_file_open();
   const char *what = NULL;
-  mesh_file_open(&f);
   OWNED mesh *grid = make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8});
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
   OWNED mesh *m = read_again(&f, grid, NULL), *same = refine(&f, m, large);
@@ -212,8 +209,7 @@ TEST(nothing_gets_larger) {
 }
 
 TEST(box_is_refined) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *grid = make_grid_3d((int[]){2, 3, 2}, (double[]){1.0, 1.2, 0.7});
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
   OWNED mesh *m = read_again(&f, grid, NULL),
@@ -230,8 +226,7 @@ TEST(box_is_refined) {
 
 /* In that unit. */
 static mesh *refine_in(double unit, int dim) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *grid =
       dim == 2 ? make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8})
                : make_grid_3d((int[]){2, 2, 2}, (double[]){1.0, 0.9, 0.7});
@@ -278,8 +273,7 @@ static void bend(mesh *m) {
 /* New nodes are on the arc; what is straight and the corner to the group RIGHT,
  * which may be curved too, stay. */
 TEST(surfaces_in_contact_are_followed) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *grid = make_grid_2d((int[]){8, 4}, (double[]){2.0, 1.0});
   bend(grid);
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
@@ -318,8 +312,7 @@ static double enclosed(const mesh *m) {
 /* Along a hump of the radius 2 lie elements a quarter as high as it is over
  * their sides: new nodes on it would turn them over. */
 TEST(thin_elements_are_not_turned_over) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *grid = make_grid_2d((int[]){8, 4}, (double[]){2.0, 1.0});
   for (int i = 0; i < grid->n_node; ++i) {
     double *x = grid->x + 2 * i;
@@ -351,8 +344,7 @@ static double height(int twisted, const double *x) {
  * saddle, whose normals at the border are those of its curves. */
 TEST(curved_surfaces_are_followed) {
   for (int twisted = 0; twisted < 2; ++twisted) {
-    MESH_FILE f;
-    mesh_file_open(&f);
+    MESH_FILE f = mesh_file_open();
     OWNED mesh *grid =
         make_grid_3d((int[]){4, 4, 2}, (double[]){0.8, 0.8, 0.6});
     for (int i = 0; i < grid->n_node; ++i) {
@@ -380,8 +372,7 @@ TEST(curved_surfaces_are_followed) {
 }
 
 TEST(each_refused_request_is_an_error_and_frees_all) {
-  MESH_FILE f;
-  mesh_file_open(&f);
+  MESH_FILE f = mesh_file_open();
   OWNED mesh *grid = make_grid_2d((int[]){2, 2}, (double[]){1.0, 1.0});
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
   OWNED mesh *m = read_again(&f, grid, NULL);

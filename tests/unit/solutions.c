@@ -8,12 +8,11 @@
 #include "support/unit.h"
 
 static solver_report solve(contact_case *c) {
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   solver_report rep;
   solver_choice choice = {.tol = 1e-12};
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
-  contact_solver_free(&s);
   return rep;
 }
 

@@ -48,17 +48,16 @@ TEST(one_triangle_slips_sticks_and_opens) {
       {-1, .3, -.9657142857142857, .1642857142857143, .1642857142857143},
       {1.9, -1, 2.2471428571428571, 0, 0},
       {1, .01, NAN, 0, 0}};
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i)
-    for (int k = 0; k < 4; ++k) {
-      CONTACT_CASE c = case_triangle(.3, 1.0, expected[k].fx, expected[k].fy);
-      double ut, N, T;
-      ck_assert(triangle_answer(ops, &c, &ut, &N, &T));
-      if (!isnan(expected[k].ut))
-        ck_assert_double_eq_tol(ut, expected[k].ut, 1e-10);
-      ck_assert_double_eq_tol(N, expected[k].N, 1e-10);
-      ck_assert_double_eq_tol(T, expected[k].T, 1e-10);
-    }
+  EACH_SOLVER(i, ops)
+  for (int k = 0; k < 4; ++k) {
+    CONTACT_CASE c = case_triangle(.3, 1.0, expected[k].fx, expected[k].fy);
+    double ut, N, T;
+    ck_assert(triangle_answer(ops, &c, &ut, &N, &T));
+    if (!isnan(expected[k].ut))
+      ck_assert_double_eq_tol(ut, expected[k].ut, 1e-10);
+    ck_assert_double_eq_tol(N, expected[k].N, 1e-10);
+    ck_assert_double_eq_tol(T, expected[k].T, 1e-10);
+  }
 }
 
 /* mu = 2 > mu_crit = 1.8: free, stick and slip are all solutions of
@@ -67,50 +66,47 @@ TEST(one_triangle_has_three_solutions_for_large_friction) {
   static const double ut[] = {2.2471428571428571, 0, 1.04};
   static const double rt[] = {0, -1.9, -1.0}, rn[] = {0, -1, -.5};
   int found[3] = {0};
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i)
-    for (int start = 0; start < 3; ++start) {
-      CONTACT_CASE c = case_triangle(.3, 2.0, 1.9, -1);
-      c.u[1] = ut[start] * 1.01;
-      c.u[0] = start == 0 ? -.09 : 0.0;
-      c.r[0] = rn[start] * 0.99;
-      c.r[1] = rt[start];
-      double u, N, T;
-      int answered = triangle_answer(ops, &c, &u, &N, &T);
-      int which = -1;
-      for (int k = 0; k < 3; ++k)
-        if (fabs(u - ut[k]) < 1e-9 && fabs(T - rt[k]) < 1e-9 &&
-            fabs(N + rn[k]) < 1e-9)
-          which = k;
-      ck_assert_msg(!answered || which >= 0, "%s: u_t = %g is none of three",
-                    row_name(ops), u);
-      if (answered) ++found[which];
-    }
+  EACH_SOLVER(i, ops)
+  for (int start = 0; start < 3; ++start) {
+    CONTACT_CASE c = case_triangle(.3, 2.0, 1.9, -1);
+    c.u[1] = ut[start] * 1.01;
+    c.u[0] = start == 0 ? -.09 : 0.0;
+    c.r[0] = rn[start] * 0.99;
+    c.r[1] = rt[start];
+    double u, N, T;
+    int answered = triangle_answer(ops, &c, &u, &N, &T);
+    int which = -1;
+    for (int k = 0; k < 3; ++k)
+      if (fabs(u - ut[k]) < 1e-9 && fabs(T - rt[k]) < 1e-9 &&
+          fabs(N + rn[k]) < 1e-9)
+        which = k;
+    ck_assert_msg(!answered || which >= 0, "%s: u_t = %g is none of three",
+                  row_name(ops), u);
+    if (answered) ++found[which];
+  }
   for (int k = 0; k < 3; ++k) ck_assert_int_gt(found[k], 0);
 }
 
 /* Penetration d taken back by a force with u_t = 0: locked for mu >= .5556. */
 TEST(wedged_triangle_is_locked_by_friction) {
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i)
-    for (int locked = 0; locked < 2; ++locked) {
-      CONTACT_CASE c = case_triangle(.3, locked ? .56 : .55, 0, 0);
-      c.gap[0] = -0.1;
-      double ut, N, T;
-      ck_assert(triangle_answer(ops, &c, &ut, &N, &T));
-      if (locked)
-        ck_assert_double_eq_tol(N, .1 * c.A[0], 1e-12);
-      else
-        ck_assert_double_eq_tol(fabs(T), .55 * N, 1e-12);
-      ck_assert_int_eq(fabs(ut) < 1e-11, locked);
-    }
+  EACH_SOLVER(i, ops)
+  for (int locked = 0; locked < 2; ++locked) {
+    CONTACT_CASE c = case_triangle(.3, locked ? .56 : .55, 0, 0);
+    c.gap[0] = -0.1;
+    double ut, N, T;
+    ck_assert(triangle_answer(ops, &c, &ut, &N, &T));
+    if (locked)
+      ck_assert_double_eq_tol(N, .1 * c.A[0], 1e-12);
+    else
+      ck_assert_double_eq_tol(fabs(T), .55 * N, 1e-12);
+    ck_assert_int_eq(fabs(ut) < 1e-11, locked);
+  }
 }
 
 /* Its load is taken away: the wedge stays, though no force solves it too. */
 TEST(wedge_stays_without_a_load) {
   static const double A[] = {1, -0.8, -0.8, 1};
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     CONTACT_CASE c = case_new(2, 1, 2.0);
     memcpy(c.A, A, sizeof A);
     c.ut0[0] = c.u[1] = c.r[1] = 1;
@@ -143,8 +139,7 @@ TEST(no_load_costs_nothing) {
 }
 
 TEST(no_node_is_solved) {
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     CONTACT_CASE c = case_new(2, 0, 0.3);
     solver_report rep = solve_by(ops, &c, 1e-10, c.u, c.r);
     ck_assert_int_eq(rep.outcome, CONVERGED);
@@ -215,8 +210,7 @@ TEST(corner_node_meets_both_obstacles) {
       c.cp.side_gap = side;
       for (int j = 0; j < 5 * dim; ++j) c.f[j] = j % dim == 0 ? 1.0 : 0.1;
       for (int k = 1; k < dim; ++k) c.f[2 * dim + k] = push ? 9.0 : -9.0;
-      const solver_ops *ops;
-      for (int i = 0; solver_row(i, &ops); ++i) {
+      EACH_SOLVER(i, ops) {
         case_cold(&c);
         solver_report rep = solve_by(ops, &c, 1e-12, c.u, c.r);
         ck_assert_msg(rep.outcome == CONVERGED, "%s", row_name(ops));
@@ -292,8 +286,7 @@ TEST(special_cases_are_solved_from_the_compliance) {
     given.cp.A = NULL;
     given.cp.W = W;
     given.cp.f = q;
-    const solver_ops *ops;
-    for (int i = 0; solver_row(i, &ops); ++i) {
+    EACH_SOLVER(i, ops) {
       case_cold(&c);
       solver_report rep = solve_by(ops, &given, 1e-11, c.u, c.r);
       ck_assert_msg(rep.outcome == CONVERGED, "%s: case %d: %s", row_name(ops),
@@ -323,8 +316,7 @@ TEST(nearly_singular_compliance_is_solved) {
     for (int i = 0; i < m; ++i) c.A[i + m * i] += k % 4 < 2 ? 1e-9 : 0.0;
     c.cp.W = c.A;
     c.cp.A = NULL;
-    const solver_ops *ops;
-    for (int i = 0; solver_row(i, &ops); ++i) {
+    EACH_SOLVER(i, ops) {
       case_cold(&c);
       solver_report rep = solve_by(ops, &c, 1e-8, c.u, c.r);
       if (ops != NULL && (ops->handles & NEEDS_STIFFNESS) &&
@@ -461,7 +453,7 @@ TEST(solved_state_is_kept_and_a_near_one_is_cheap) {
     CONTACT_CASE c =
         case_any(2 + k % 2, 40, 0.4, k / 2 % 2, (unsigned long long)(700 + k));
     solver_choice choice = {.tol = 1e-10};
-    contact_solver *s = NULL;
+    ENDS_BY(contact_solver_free) contact_solver *s = NULL;
     solver_report rep;
     int m = c.cp.m;
     FREED double *u = calloc((size_t)m, sizeof *u);
@@ -475,7 +467,6 @@ TEST(solved_state_is_kept_and_a_near_one_is_cheap) {
     ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_int_le(rep.iterations, 4);
-    contact_solver_free(&s);
   }
 }
 
@@ -572,20 +563,18 @@ TEST(body_at_rest_costs_next_to_nothing) {
 }
 
 TEST(nan_in_the_data_is_told) {
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i)
-    for (int k = 0; k < 5; ++k) {
-      CONTACT_CASE c = case_any(2, 5, 0.3, 0, 61);
-      double *where[] = {c.A, c.f, c.gap, c.ut0, c.g0};
-      where[k][0] = NAN;
-      solver_report rep = solve_by(ops, &c, 1e-10, c.u, c.r);
-      ck_assert_int_eq(rep.outcome, STOPPED_NAN);
-    }
+  EACH_SOLVER(i, ops)
+  for (int k = 0; k < 5; ++k) {
+    CONTACT_CASE c = case_any(2, 5, 0.3, 0, 61);
+    double *where[] = {c.A, c.f, c.gap, c.ut0, c.g0};
+    where[k][0] = NAN;
+    solver_report rep = solve_by(ops, &c, 1e-10, c.u, c.r);
+    ck_assert_int_eq(rep.outcome, STOPPED_NAN);
+  }
 }
 
 TEST(nan_in_the_start_is_forgotten) {
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     CONTACT_CASE c = case_any(2, 5, 0.3, 0, 61);
     c.u[3] = c.r[4] = NAN;
     solver_report rep = solve_by(ops, &c, 1e-10, c.u, c.r);
@@ -631,8 +620,7 @@ TEST(best_of_none_leaves_the_start) {
 }
 
 TEST(limit_of_iterations_is_honest_and_heard) {
-  const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i) {
+  EACH_SOLVER(i, ops) {
     if (ops == NULL) continue;
     CONTACT_CASE c = case_any(2, 50, 0.8, 1, 71);
     double param[PARAM_SIZE / sizeof(double)] = {0.0};
@@ -640,14 +628,13 @@ TEST(limit_of_iterations_is_honest_and_heard) {
     solver_listener listener = {count_step, &heard};
     solver_choice choice = {
         .ops = ops, .param = param, .tol = 1e-13, .max_iter = 1};
-    contact_solver *s = NULL;
+    ENDS_BY(contact_solver_free) contact_solver *s = NULL;
     solver_report rep;
     ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
     ck_assert_int_eq(contact_solve(s, &c.cp, &listener, c.u, c.r, &rep), OK);
     ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
     ck_assert(rep.residual > 1e-13);
     ck_assert_msg(heard > 0, "%s", row_name(ops));
-    contact_solver_free(&s);
   }
 }
 

@@ -33,8 +33,7 @@ TEST(plain_block_slides_for_every_row) {
     w.cp.A = NULL;
     w.cp.W = W;
     w.cp.f = q;
-    const solver_ops *ops;
-    for (int i = 0; solver_row(i, &ops); ++i) {
+    EACH_SOLVER(i, ops) {
       case_cold(&c);
       solver_report rep = solve_by(ops, &w, 1e-10, c.u, c.r);
       ck_assert_msg(rep.outcome == CONVERGED, "%s: %s", row_name(ops),

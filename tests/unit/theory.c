@@ -15,7 +15,7 @@ enum { PARAM_SIZE = 512 };
 static void solve(contact_case *c) {
   double param[PARAM_SIZE / sizeof(double)] = {0.0};
   const solver_ops *ops = solver_find("newton");
-  contact_solver *s = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *s = NULL;
   solver_report rep;
   option_defaults(ops->options, param);
   solver_choice choice = {
@@ -23,7 +23,6 @@ static void solve(contact_case *c) {
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
   ck_assert_int_gt(rep.outcome, 0);
-  contact_solver_free(&s);
 }
 
 /* All nodes on one contact. */

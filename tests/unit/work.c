@@ -77,8 +77,8 @@ TEST(work_grows_with_the_mesh) {
   effect_plan *p[2];
   for (int k = 0; k < 2; ++k) {
     const int n = k == 0 ? 8 : FINE * 8;
-    text_model_read(&s[k], CARDS,
-                    make_grid_2d((int[]){n, n}, (double[]){1.0, 1.0}));
+    s[k] = text_model_read(CARDS,
+                           make_grid_2d((int[]){n, n}, (double[]){1.0, 1.0}));
     ck_assert_int_eq(s[k].st, OK);
     ck_assert_int_eq(plan_new(s[k].m, s[k].msh, 0, &p[k]), OK);
   }

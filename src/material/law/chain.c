@@ -32,25 +32,19 @@ typedef struct burgers_value {
   OPTION_REAL(struct_, field, name, DBL_MIN, DBL_MAX, NULL, \
               "force/length^2 time", help)
 
-static const option options[] = {
-    OPTION_CHOICE(chain_param, type, "TYPE", "PROPORTIONAL|DEVIATORIC",
-                  "PROPORTIONAL",
-                  "the whole strain is delayed, or its deviator"),
-    OPTION_END};
-static const option zener_fields[] = {
-    MODULUS(unit, modulus, "E1"),
-    VISCOSITY(unit, viscosity, "eta1", "viscosity of the dashpot"), OPTION_END};
-static const option kelvin_terms[] = {
-    MODULUS(unit, modulus, "E_k"),
-    VISCOSITY(unit, viscosity, "eta_k", "viscosity of the dashpot"),
-    OPTION_END};
-static const option burgers_fields[] = {
-    VISCOSITY(burgers_value, dashpot, "eta_M",
-              "viscosity of the single dashpot"),
-    MODULUS(burgers_value, kelvin.modulus, "E_K"),
-    VISCOSITY(burgers_value, kelvin.viscosity, "eta_K",
-              "viscosity parallel to the spring"),
-    OPTION_END};
+OPTIONS(options, OPTION_CHOICE(chain_param, type, "TYPE",
+                               "PROPORTIONAL|DEVIATORIC", "PROPORTIONAL",
+                               "the whole strain is delayed, or its deviator"));
+OPTIONS(zener_fields, MODULUS(unit, modulus, "E1"),
+        VISCOSITY(unit, viscosity, "eta1", "viscosity of the dashpot"));
+OPTIONS(kelvin_terms, MODULUS(unit, modulus, "E_k"),
+        VISCOSITY(unit, viscosity, "eta_k", "viscosity of the dashpot"));
+OPTIONS(burgers_fields,
+        VISCOSITY(burgers_value, dashpot, "eta_M",
+                  "viscosity of the single dashpot"),
+        MODULUS(burgers_value, kelvin.modulus, "E_K"),
+        VISCOSITY(burgers_value, kelvin.viscosity, "eta_K",
+                  "viscosity parallel to the spring"));
 
 /* The units of a point, whatever the law. */
 typedef struct chain {

@@ -36,29 +36,28 @@ typedef struct hyperbolic_value {
   double A, B, n, dH, R;
 } hyperbolic_value;
 
-static const option norton_options[] = {
-    OPTION_CHOICE(norton, hardening, "HARDENING", "TIME|STRAIN", "TIME",
-                  "what slows the creep down if m < 0"),
-    OPTION_END};
-static const option norton_fields[] = {
-    OPTION_REAL(norton_value, A, "A", 0, DBL_MAX, NULL, "stress^-n time^-(1+m)",
-                "factor"),
-    OPTION_REAL(norton_value, n, "n", 1, 1000, NULL, "-",
-                "exponent of the equivalent stress"),
-    OPTION_REAL(norton_value, m, "m", -0.99, 1, "0", "-",
-                "exponent of hardening, in general from -1 to 0"),
-    OPTION_END};
-static const option hyperbolic_fields[] = {
-    OPTION_REAL(hyperbolic_value, A, "A", 0, DBL_MAX, NULL, "1/time", "factor"),
-    OPTION_REAL(hyperbolic_value, B, "B", DBL_MIN, DBL_MAX, NULL,
-                "length^2/force", "1/B: stress at which the power law ends"),
-    OPTION_REAL(hyperbolic_value, n, "n", 1, 1000, NULL, "-",
-                "exponent of the hyperbolic sine"),
-    OPTION_REAL(hyperbolic_value, dH, "dH", 0, DBL_MAX, "0", "unit of R T",
-                "activation energy"),
-    OPTION_REAL(hyperbolic_value, R, "R", DBL_MIN, DBL_MAX, "8.314462618",
-                "dH/temperature", "gas constant"),
-    OPTION_END};
+OPTIONS(norton_options,
+        OPTION_CHOICE(norton, hardening, "HARDENING", "TIME|STRAIN", "TIME",
+                      "what slows the creep down if m < 0"));
+OPTIONS(norton_fields,
+        OPTION_REAL(norton_value, A, "A", 0, DBL_MAX, NULL,
+                    "stress^-n time^-(1+m)", "factor"),
+        OPTION_REAL(norton_value, n, "n", 1, 1000, NULL, "-",
+                    "exponent of the equivalent stress"),
+        OPTION_REAL(norton_value, m, "m", -0.99, 1, "0", "-",
+                    "exponent of hardening, in general from -1 to 0"));
+OPTIONS(hyperbolic_fields,
+        OPTION_REAL(hyperbolic_value, A, "A", 0, DBL_MAX, NULL, "1/time",
+                    "factor"),
+        OPTION_REAL(hyperbolic_value, B, "B", DBL_MIN, DBL_MAX, NULL,
+                    "length^2/force",
+                    "1/B: stress at which the power law ends"),
+        OPTION_REAL(hyperbolic_value, n, "n", 1, 1000, NULL, "-",
+                    "exponent of the hyperbolic sine"),
+        OPTION_REAL(hyperbolic_value, dH, "dH", 0, DBL_MAX, "0", "unit of R T",
+                    "activation energy"),
+        OPTION_REAL(hyperbolic_value, R, "R", DBL_MIN, DBL_MAX, "8.314462618",
+                    "dH/temperature", "gas constant"));
 
 /* Rates at an equivalent stress q; a is the internal variable, if there is. */
 typedef struct creep {

@@ -18,18 +18,16 @@ typedef struct maxwell_value {
   double tau, tau_bulk; /* s; tau_bulk 0: the mean stress does not relax */
 } maxwell_value;
 
-static const option options[] = {
-    OPTION_CHOICE(maxwell, type, "TYPE", "PROPORTIONAL|DEVIATORIC",
-                  "PROPORTIONAL", "the whole stress relaxes, or its deviator"),
-    OPTION_END};
-static const option fields[] = {
-    OPTION_REAL(maxwell_value, tau, "tau", DBL_MIN, DBL_MAX, NULL, "time",
-                "relaxation time"),
-    OPTION_REAL(maxwell_value, tau_bulk, "tau_bulk", 0, DBL_MAX, OPTION_ABSENT,
-                "time",
-                "of the mean stress with TYPE=DEVIATORIC; absent or 0: "
-                "it does not relax"),
-    OPTION_END};
+OPTIONS(options, OPTION_CHOICE(maxwell, type, "TYPE", "PROPORTIONAL|DEVIATORIC",
+                               "PROPORTIONAL",
+                               "the whole stress relaxes, or its deviator"));
+OPTIONS(fields,
+        OPTION_REAL(maxwell_value, tau, "tau", DBL_MIN, DBL_MAX, NULL, "time",
+                    "relaxation time"),
+        OPTION_REAL(maxwell_value, tau_bulk, "tau_bulk", 0, DBL_MAX,
+                    OPTION_ABSENT, "time",
+                    "of the mean stress with TYPE=DEVIATORIC; absent or 0: "
+                    "it does not relax"));
 
 static const maxwell_value *values(const law_point *p) {
   return (const maxwell_value *)(const void *)p->value;

@@ -13,14 +13,13 @@ typedef struct prony_term {
   double g, k, tau;
 } prony_term;
 
-static const option terms[] = {
-    OPTION_REAL(prony_term, g, "g_i", 0, 1, "0", "-",
-                "part of the shear modulus that relaxes"),
-    OPTION_REAL(prony_term, k, "k_i", 0, 1, "0", "-",
-                "part of the bulk modulus that relaxes"),
-    OPTION_REAL(prony_term, tau, "tau_i", DBL_MIN, DBL_MAX, NULL, "time",
-                "relaxation time"),
-    OPTION_END};
+OPTIONS(terms,
+        OPTION_REAL(prony_term, g, "g_i", 0, 1, "0", "-",
+                    "part of the shear modulus that relaxes"),
+        OPTION_REAL(prony_term, k, "k_i", 0, 1, "0", "-",
+                    "part of the bulk modulus that relaxes"),
+        OPTION_REAL(prony_term, tau, "tau_i", DBL_MIN, DBL_MAX, NULL, "time",
+                    "relaxation time"));
 
 static const prony_term *terms_of(const law_point *p) {
   return (const void *)p->value;

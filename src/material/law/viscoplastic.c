@@ -45,35 +45,26 @@ typedef struct back_stress {
   OPTION_REAL(struct_, n, "n", 1, 1000, initial, "-", \
               "exponent of the overstress")
 
-static const option bingham_fields[] = {
-    YIELD_STRESS(bingham_value),
-    OPTION_REAL(bingham_value, eta, "eta", DBL_MIN, DBL_MAX, NULL,
-                STRESS " time", "viscosity: dp/dt = overstress/eta"),
-    OPTION_END};
-static const option perzyna_fields[] = {
-    YIELD_STRESS(perzyna_value),
-    OPTION_REAL(perzyna_value, eta, "eta", DBL_MIN, DBL_MAX, NULL,
-                STRESS " time^(1/n)", "dp/dt = (overstress/eta)^n"),
-    OPTION_REAL(perzyna_value, H, "H", 0, DBL_MAX, "0", STRESS,
-                "rise of the threshold with p"),
-    EXPONENT(perzyna_value, "1"),
-    VOCE_Q(perzyna_value),
-    VOCE_B(perzyna_value),
-    OPTION_END};
-static const option chaboche_fields[] = {
-    YIELD_STRESS(chaboche_value),
-    OPTION_REAL(chaboche_value, K, "K", DBL_MIN, DBL_MAX, NULL,
-                STRESS " time^(1/n)", "dp/dt = (overstress/K)^n"),
-    EXPONENT(chaboche_value, NULL),
-    VOCE_Q(chaboche_value),
-    VOCE_B(chaboche_value),
-    OPTION_END};
-static const option chaboche_terms[] = {
-    OPTION_REAL(back_stress, C, "C_k", 0, DBL_MAX, NULL, STRESS,
-                "modulus of the back stress at its start"),
-    OPTION_REAL(back_stress, gamma, "gamma_k", 0, DBL_MAX, "0", "-",
-                "recall: the back stress ends at C_k/gamma_k"),
-    OPTION_END};
+OPTIONS(bingham_fields, YIELD_STRESS(bingham_value),
+        OPTION_REAL(bingham_value, eta, "eta", DBL_MIN, DBL_MAX, NULL,
+                    STRESS " time", "viscosity: dp/dt = overstress/eta"));
+OPTIONS(perzyna_fields, YIELD_STRESS(perzyna_value),
+        OPTION_REAL(perzyna_value, eta, "eta", DBL_MIN, DBL_MAX, NULL,
+                    STRESS " time^(1/n)", "dp/dt = (overstress/eta)^n"),
+        OPTION_REAL(perzyna_value, H, "H", 0, DBL_MAX, "0", STRESS,
+                    "rise of the threshold with p"),
+        EXPONENT(perzyna_value, "1"), VOCE_Q(perzyna_value),
+        VOCE_B(perzyna_value));
+OPTIONS(chaboche_fields, YIELD_STRESS(chaboche_value),
+        OPTION_REAL(chaboche_value, K, "K", DBL_MIN, DBL_MAX, NULL,
+                    STRESS " time^(1/n)", "dp/dt = (overstress/K)^n"),
+        EXPONENT(chaboche_value, NULL), VOCE_Q(chaboche_value),
+        VOCE_B(chaboche_value));
+OPTIONS(chaboche_terms,
+        OPTION_REAL(back_stress, C, "C_k", 0, DBL_MAX, NULL, STRESS,
+                    "modulus of the back stress at its start"),
+        OPTION_REAL(back_stress, gamma, "gamma_k", 0, DBL_MAX, "0", "-",
+                    "recall: the back stress ends at C_k/gamma_k"));
 
 static yield yield_of(const law_point *p) {
   if (p->law->ops == &chaboche_law) {

@@ -17,33 +17,29 @@
 #define FLAG(field, ...) OPTION_FLAG(card_options, field, __VA_ARGS__)
 #define CHOICE(field, ...) OPTION_CHOICE(card_options, field, __VA_ARGS__)
 
-static const option units_options[] = {
+OPTIONS(units_options,
   NAME(units.length, "LENGTH", OPTION_ABSENT, "label, \"mm\""),
   NAME(units.force, "FORCE", OPTION_ABSENT, "label, \"N\""),
-  NAME(units.time, "TIME", OPTION_ABSENT, "label, \"s\""),
-  OPTION_END};
-static const option mesh_options[] = {
+  NAME(units.time, "TIME", OPTION_ABSENT, "label, \"s\""));
+OPTIONS(mesh_options,
   NAME(file, "FILE", NULL, ".msh or .geo, relative to the deck"),
   REAL(body.scale, "SCALE", DBL_MIN, DBL_MAX, "1", "-",
-       "factor on all coordinates"),
-  OPTION_END};
-static const option problem_options[] = {
+       "factor on all coordinates"));
+OPTIONS(problem_options,
   NAME(file, "FILE", NULL,
        "FCLIB (HDF5) or a plain LCP (text), relative to the deck"),
-  CHOICE(type, "TYPE", "FCLIB|LCP", OPTION_ABSENT,"absent: by the file itself"),
-  OPTION_END};
-static const option name_options[] = {
-  NAME(name, "NAME", NULL, "name for other cards"),
-  OPTION_END};
-static const option step_options[] = {
-  NAME(name, "NAME", OPTION_ABSENT, "name in the output"),
-  OPTION_END};
-static const option elastic_options[] = {
+  CHOICE(type, "TYPE", "FCLIB|LCP", OPTION_ABSENT,
+         "absent: by the file itself"));
+OPTIONS(name_options,
+  NAME(name, "NAME", NULL, "name for other cards"));
+OPTIONS(step_options,
+  NAME(name, "NAME", OPTION_ABSENT, "name in the output"));
+OPTIONS(elastic_options,
   CHOICE(type, "TYPE", ELASTIC_WORDS, "ISO", "symmetry of the material"),
   CHOICE(body.moduli, "MODULI", "LONG TERM|INSTANTANEOUS", OPTION_ABSENT,
          "with a Prony series: after all terms have relaxed, or at once; "
-         "absent: LONG TERM with *VISCOELASTIC, INSTANTANEOUS with *INELASTIC"),
-  OPTION_END};
+         "absent: LONG TERM with *VISCOELASTIC, INSTANTANEOUS with "
+         "*INELASTIC"));
 #define SHIFT_ROWS                                                            \
   CHOICE(shift.kind, "SHIFT", SHIFT_WORDS, "NONE",                            \
          "time-temperature shift: the rates are divided by a"),               \
@@ -58,38 +54,32 @@ static const option elastic_options[] = {
        "1/(T_REF - T_ZERO))"),                                                \
   REAL(shift.zero, "T_ZERO", -DBL_MAX, DBL_MAX, OPTION_ABSENT, "temperature", \
        "absolute zero, -273.15 in Celsius; absent: 0")
-static const option inelastic_options[] = {
+OPTIONS(inelastic_options,
   NAME(law, "LAW", NULL, "protis --list materials"),
-  SHIFT_ROWS,
-  OPTION_END};
-static const option creep_options[] = {
+  SHIFT_ROWS);
+OPTIONS(creep_options,
   CHOICE(type, "LAW", CREEP_WORDS, "STRAIN",
          "strain hardening, time hardening, m = 0, hyperbolic sine"),
-  SHIFT_ROWS,
-  OPTION_END};
-static const option viscoelastic_options[] = {
+  SHIFT_ROWS);
+OPTIONS(viscoelastic_options,
   CHOICE(type, "TIME", "PRONY", NULL, "terms of a Prony series"),
-  SHIFT_ROWS,
-  OPTION_END};
-static const option trs_options[] = {
+  SHIFT_ROWS);
+OPTIONS(trs_options,
   CHOICE(type, "DEFINITION", "WLF", "WLF", "log10 a = -C1 (T - T_REF)/(C2 + T "
-         "- T_REF); others: SHIFT= of *INELASTIC, *VISCOELASTIC"),
-  OPTION_END};
-static const option expansion_options[] = {
+         "- T_REF); others: SHIFT= of *INELASTIC, *VISCOELASTIC"));
+OPTIONS(expansion_options,
   CHOICE(type, "TYPE", EXPANSION_WORDS, "ISO",
          "one coefficient, or one for each axis"),
   REAL(body.zero, "ZERO", -DBL_MAX, DBL_MAX, "0", "temperature",
-       "from where the coefficients are secants"),
-  OPTION_END};
-static const option initial_options[] = {
+       "from where the coefficients are secants"));
+OPTIONS(initial_options,
   CHOICE(type, "TYPE", INITIAL_WORDS, NULL, "what the lines give"),
   NAME(file, "FILE", OPTION_ABSENT, "of displacements: JOB.h5 of a run on the "
        "same mesh; its end is the start, lines override it"),
   CHOICE(body.incompatible, "INCOMPATIBLE", "REFUSE|RELAX", "REFUSE",
          "displacements out of equilibrium at time 0 (CPR98 3.3): an error, or "
-         "relaxed to it as increment 0"),
-  OPTION_END};
-static const option section_options[] = {
+         "relaxed to it as increment 0"));
+OPTIONS(section_options,
   NAME(body.elset, "ELSET", NULL, "group of elements"),
   NAME(body.material, "MATERIAL", NULL, "name of a *MATERIAL"),
   CHOICE(type, "TYPE", KINEMATICS_WORDS, OPTION_ABSENT,
@@ -99,9 +89,8 @@ static const option section_options[] = {
   CHOICE(body.formulation, "FORMULATION", "STANDARD|AVERAGED", "STANDARD",
          "AVERAGED: change of volume averaged over clusters of elements, as "
          "far as nu exceeds 0.4, or all of it if the material flows: no "
-         "locking"),
-  OPTION_END};
-static const option obstacle_options[] = {
+         "locking"));
+OPTIONS(obstacle_options,
   NAME(name, "NAME", NULL, "name for *CONTACT"),
   CHOICE(type, "TYPE", OBSTACLE_SHAPES, NULL, "shape"),
   REAL(radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT, "length",
@@ -109,16 +98,15 @@ static const option obstacle_options[] = {
   CHOICE(surface.side, "SIDE", "OUTSIDE|INSIDE", "OUTSIDE",
          "where the body is"),
   NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
-       "factor on MOVE and ROTATE in total time, whatever its TIME="),
-  OPTION_END};
-static const option contact_options[] = {
+       "factor on MOVE and ROTATE in total time, whatever its TIME="));
+OPTIONS(contact_options,
   NAME(name, "NAME", NULL, "name for *FRICTION"),
   NAME(group, "GROUP", NULL, "faces of Gamma_3"),
   NAME(surface.obstacle, "OBSTACLE", NULL, "name of an *OBSTACLE"),
   CHOICE(surface.normal, "NORMAL", "BODY|OBSTACLE", OPTION_ABSENT,
-         "whose normal counts; absent: that of a PLANE, else that of the body"),
-  OPTION_END};
-static const option pair_options[] = {
+         "whose normal counts; absent: that of a PLANE, else that of the "
+         "body"));
+OPTIONS(pair_options,
   NAME(name, "NAME", NULL, "name for *FRICTION"),
   CHOICE(surface.slave, "SLAVE", SLAVE_WORDS, "AUTO",
          "which surface has the contact "
@@ -134,57 +122,50 @@ static const option pair_options[] = {
   CHOICE(type, "TYPE", "SURFACE TO SURFACE", "SURFACE TO SURFACE",
          "mortar method; there is no other"),
   NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
-       "factor on CLEARANCE or INTERFERENCE in total time, whatever its TIME="),
-  OPTION_END};
-static const option crack_options[] = {
+       "factor on CLEARANCE or INTERFERENCE in total time, whatever its "
+       "TIME="));
+OPTIONS(crack_options,
   NAME(name, "NAME", NULL, "name for *FRICTION"),
-  NAME(group, "GROUP", NULL, "faces inside the body (2-D: curves), which open"),
-  OPTION_END};
-static const option tie_options[] = {
+  NAME(group, "GROUP", NULL,
+       "faces inside the body (2-D: curves), which open"));
+OPTIONS(tie_options,
   NAME(name, "NAME", NULL, "name for messages"),
   CHOICE(surface.slave, "SLAVE", SLAVE_WORDS, "AUTO",
          "whose nodes move with the "
          "other; AUTO: at a contact the finer, else as of a pair"),
   CHOICE(surface.adjust, "ADJUST", "NO|YES", "NO",
          "YES: nodes of the slave are moved "
-         "onto the master before the run, without strain"),
-  OPTION_END};
-static const option friction_options[] = {
+         "onto the master before the run, without strain"));
+OPTIONS(friction_options,
   NAME(contact, "CONTACT", NULL, "name of a *CONTACT"),
   NAME(law, "LAW", NULL, "protis --list friction"),
   NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
        "factor in total time, whatever the TIME= of the amplitude"),
   CHOICE(surface.table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
-         "data lines are pairs coordinate (or total time), value"),
-  OPTION_END};
-static const option force_options[] = {
+         "data lines are pairs coordinate (or total time), value"));
+OPTIONS(force_options,
   NAME(contact, "CONTACT", NULL, "name of a *CONTACT"),
   NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
        "factor in total time, whatever the TIME= of the amplitude"),
   CHOICE(surface.table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
-         "data lines are pairs coordinate (or total time), value"),
-  OPTION_END};
-static const option wear_options[] = {
+         "data lines are pairs coordinate (or total time), value"));
+OPTIONS(wear_options,
   NAME(contact, "CONTACT", NULL, "name of a *CONTACT"),
   REAL(value[0], "COEFFICIENT", 0, DBL_MAX, NULL, "length^2/force",
-       "k of Archard's law, depth = k p |slip|"),
-  OPTION_END};
-static const option amplitude_options[] = {
+       "k of Archard's law, depth = k p |slip|"));
+OPTIONS(amplitude_options,
   NAME(name, "NAME", NULL, "name for AMPLITUDE="),
   CHOICE(time, "TIME", "STEP TIME|TOTAL TIME", "STEP TIME",
-         "which time the table counts"),
-  OPTION_END};
-static const option points_options[] = {
+         "which time the table counts"));
+OPTIONS(points_options,
   NAME(name, "NAME", NULL, "name for TIME POINTS="),
   CHOICE(time, "TIME", "STEP TIME|TOTAL TIME", "STEP TIME",
          "which time the points count"),
-  FLAG(type, "GENERATE", "NO", "lines are first time, last time, interval"),
-  OPTION_END};
-static const option quasistatic_options[] = {
+  FLAG(type, "GENERATE", "NO", "lines are first time, last time, interval"));
+OPTIONS(quasistatic_options,
   CHOICE(type, "FORM", STEP_FORMS, "DISPLACEMENT",
-         "unknown of an increment: N2 or N3 of CPR98, same solution"),
-  OPTION_END};
-static const option visco_options[] = {
+         "unknown of an increment: N2 or N3 of CPR98, same solution"));
+OPTIONS(visco_options,
   NAME(visco.integrator, "INTEGRATOR", NULL, "protis --list integrators"),
   REAL(visco.theta, "THETA", DBL_MIN, 1, "0.5", "-",
        "of INTEGRATOR=THETA: where in the step the rates are taken"),
@@ -196,23 +177,20 @@ static const option visco_options[] = {
          "stress, which never factors again"),
   CHOICE(visco.substeps, "SUBSTEPS", "NO|AUTO", "NO",
          "AUTO cuts increments beyond "
-         "the stability of an explicit integrator into 2, 4, 8, ..."),
-  OPTION_END};
-static const option load_options[] = {
+         "the stability of an explicit integrator into 2, 4, 8, ..."));
+OPTIONS(load_options,
   NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
        "course in time; absent: linear over the step"),
   CHOICE(op, "OP", "MOD|NEW", "MOD",
-         "NEW ends what earlier steps gave by this card"),
-  OPTION_END};
-static const option temperature_options[] = {
+         "NEW ends what earlier steps gave by this card"));
+OPTIONS(temperature_options,
   NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
        "course in time; absent: linear over the step"),
   CHOICE(op, "OP", "MOD|NEW", "MOD",
          "NEW ends what earlier steps gave by this card"),
   NAME(file, "FILE", OPTION_ABSENT, "nodal field: .msh with $NodeData, or HDF5 "
-       "with /node_no and /temperature; relative to the deck"),
-  OPTION_END};
-static const option solver_options[] = {
+       "with /node_no and /temperature; relative to the deck"));
+OPTIONS(solver_options,
   NAME(solver.method, "METHOD", "AUTO", "protis --list solvers"),
   WORD(tol, "TOL", 1e-14, 0.1, "1E-10", "-", "BALANCED",
        "residual of the contact to reach; BALANCED: stop when the error of the "
@@ -236,16 +214,14 @@ static const option solver_options[] = {
        "that STIFFNESS=AUTO keeps below; 0: 80 % of the memory"),
   FLAG(solver.nested, "NESTED", "NO",
        "first step: the first increment is solved on a "
-       "mesh of elements twice as long before, whose contact is the start"),
-  OPTION_END};
-static const option effects_options[] = {
+       "mesh of elements twice as long before, whose contact is the start"));
+OPTIONS(effects_options,
   CHOICE(type, "MODE", "CALLED|AUTO", "CALLED",
          "CALLED: all that the deck requires. AUTO: what is proved to change "
          "the solution by less than TOL is left out"),
   REAL(tol, "TOL", DBL_MIN, 0.1, "1e-3", "-",
-       "for AUTO: of the energy norm and of the largest stress"),
-  OPTION_END};
-static const option goal_options[] = {
+       "for AUTO: of the energy norm and of the largest stress"));
+OPTIONS(goal_options,
   CHOICE(goal.quantity, "QUANTITY", GOAL_QUANTITIES, NULL,
          "what is wanted; PRESSURE: the largest, or that at a point; WIDTH: of "
          "the closed zone; STRESS: mean of a group; SIF: stress intensity "
@@ -265,9 +241,8 @@ static const option goal_options[] = {
        "of the mean that PRESSURE is; half the half width of the zone if "
        "absent"),
   NAME(goal.target, "TARGET", OPTION_ABSENT, "error to reach by meshes refined "
-       "for it: 1 %, of the value, or a number in its unit"),
-  OPTION_END};
-static const option accuracy_options[] = {
+       "for it: 1 %, of the value, or a number in its unit"));
+OPTIONS(accuracy_options,
   CHOICE(accuracy.mesh, "MESH", "NO|YES|END", "END",
          "estimate of the error of the mesh, from recovered stresses: at each "
          "increment, or the last of the step"),
@@ -286,30 +261,26 @@ static const option accuracy_options[] = {
        "CPU time for that; 0: no limit"),
   REAL(max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
        "memory for that; 0: no limit"),
-  INT(accuracy.max_passes, "MAX_PASSES", 1, 20, "8", "-", "passes for that"),
-  OPTION_END};
-static const option print_options[] = {
+  INT(accuracy.max_passes, "MAX_PASSES", 1, 20, "8", "-", "passes for that"));
 #define PRINT_OPTION(name, help) \
   FLAG(output.print[PRINT_NUMBER_##name], #name, "NO", help),
+OPTIONS(print_options,
   PRINT_LIST(PRINT_OPTION)
   INT(frequency, "FREQUENCY", 0, 1000000000, "1", "-",
       "every n-th increment and the last; 0: the last only"),
   NAME(group, "GROUP", OPTION_ABSENT, "nodes or elements of one group only"),
   NAME(output.points, "TIME POINTS", OPTION_ABSENT,
-       "at these times, within increments too, in the place of FREQUENCY="),
-  OPTION_END};
-static const option output_options[] = {
+       "at these times, within increments too, in the place of FREQUENCY="));
+OPTIONS(output_options,
   FLAG(output.hdf5, "HDF5", "YES", "write JOB.h5 and JOB.xdmf"),
   INT(frequency, "FREQUENCY", 0, 1000000000, "1", "-",
       "fields every n-th increment and the last; 0: the last only"),
   CHOICE(output.condensed, "CONDENSED", "NO|FCLIB", "NO",
          "condensed contact problem and its solution, every n-th increment, "
-         "into JOB_condensed_NNNNN.h5 (increment counted from the start)"),
-  OPTION_END};
-static const option restart_options[] = {
+         "into JOB_condensed_NNNNN.h5 (increment counted from the start)"));
+OPTIONS(restart_options,
   INT(frequency, "FREQUENCY", 0, 1000000000, "1", "-",
-      "every n-th increment and the last; 0: the last only"),
-  OPTION_END};
+      "every n-th increment and the last; 0: the last only"));
 
 const keyword keyword_table[] = {
   {"HEADING", IN_MODEL, NULL, NULL, apply_heading, 0, ANY,

@@ -611,10 +611,10 @@ typedef struct auglag {
 
 typedef enum { BY_NEWTON, BY_UZAWA } variant_kind;
 
-static const option auglag_options[] = {
+OPTIONS(
+    auglag_options,
     OPTION_CHOICE(auglag, variant, "VARIANT", "NEWTON|UZAWA", "NEWTON",
-                  "both equations at once, or multiplier after displacement"),
-    OPTION_END};
+                  "both equations at once, or multiplier after displacement"));
 
 static const double SOFT = 0x1p-20; /* -, of the stiffness: none */
 

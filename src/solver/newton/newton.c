@@ -31,10 +31,9 @@ typedef struct newton {
   int steps; /* of one attempt; 0: chosen by the program */
 } newton;
 
-static const option newton_options[] = {
-    OPTION_INT(newton, steps, "STEPS", 0, 10000, "0", "-",
-               "steps of one attempt; 0: chosen by the program"),
-    OPTION_END};
+OPTIONS(newton_options,
+        OPTION_INT(newton, steps, "STEPS", 0, 10000, "0", "-",
+                   "steps of one attempt; 0: chosen by the program"));
 
 enum {
   HISTORY = 64,    /* patterns remembered */

@@ -623,10 +623,10 @@ typedef struct lemke {
   int facets; /* of the friction polygon, 3-D; 0: 8 */
 } lemke;
 
-static const option lemke_options[] = {
+OPTIONS(
+    lemke_options,
     OPTION_INT(lemke, facets, "FACETS", 4, 64, "8", "-",
-               "facets of the friction cone of the first stage in 3-D; even"),
-    OPTION_END};
+               "facets of the friction cone of the first stage in 3-D; even"));
 
 static const solver_ops *const correctors[N_CORRECTOR] = {&newton_solver,
                                                           &sor_solver};
