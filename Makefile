@@ -63,7 +63,7 @@ LDLIBS   += -lumfpack -lcholmod -lcamd -lsuitesparseconfig -llapacke -lopenblas 
 static   := -Wl$(comma)--start-group \
             $(patsubst %,-l:lib%.a,umfpack cholmod amd camd colamd ccolamd \
               suitesparseconfig lapacke openblas sz aec z) $(archive) \
-            -Wl$(comma)--end-group -l:libmetis.so.5 -l:libgomp.a -ldl -lm
+            -Wl$(comma)--end-group -l:libmetis.so.5 -lgomp -ldl -lm
 checklib := $(shell pkg-config --libs check 2>/dev/null)
 
 sources  := $(filter-out src/main.c,$(wildcard src/*/*.c src/*/*/*.c))

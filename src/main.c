@@ -43,6 +43,15 @@ static status do_job(const command *c, message_log *log, job_input *in,
   return solve(c, in, unsettled);
 }
 
+/* Line by line, of which the parts are many. */
+static void print_messages(const message_log *log) {
+  char line[BUFSIZ];
+  setvbuf(stderr, line, _IOLBF, sizeof line);
+  message_print(log, stderr);
+  fflush(stderr);
+  setvbuf(stderr, NULL, _IONBF, 0);
+}
+
 static status run_job(const command *c, message_log *log, int *unsettled) {
   job_input in = {0};
   const message_mark before = message_now(log);
@@ -51,7 +60,7 @@ static status run_job(const command *c, message_log *log, int *unsettled) {
     message_forget(log, before);
     message_take(log, in.log);
   }
-  message_print(log, stderr);
+  print_messages(log);
   if (in.closing != NULL) fputs(in.closing, stderr);
   job_input_free(&in);
   return st;
@@ -90,8 +99,7 @@ static int flush_output(int exit_code) {
 
 /* No file of the job gets the number of a stream that was closed, and what is
  * printed to none is not lost unseen: it cannot be written. HDF5 locks no file:
- * the job does (lock.c), and not every file system can. Messages are written by
- * lines. */
+ * the job does (lock.c), and not every file system can. */
 static void prepare_process(void) {
   int fd;
   do {
@@ -99,7 +107,6 @@ static void prepare_process(void) {
     if (fd == STDOUT_FILENO && close(fd) == 0) fd = open("/dev/null", O_RDONLY);
   } while (fd >= 0 && fd <= STDERR_FILENO);
   if (fd > STDERR_FILENO) close(fd);
-  setvbuf(stderr, NULL, _IOLBF, BUFSIZ);
   setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
 }
 

@@ -150,7 +150,7 @@ TEST(peak_of_the_sphere_in_space) {
   JOB j;
   const int code = run_with(&j, "input/hertz_sphere/hertz_sphere_3d",
                             "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, "
-                            "CONTACT=POLE, TARGET=10 %\n",
+                            "CONTACT=POLE, TARGET=6 %\n",
                             "", "-D NC=2");
   OK_OR_STOP(code, j);
   ck_ladder(&j, 1);
