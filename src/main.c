@@ -43,6 +43,15 @@ static status do_job(const command *c, message_log *log, job_input *in,
   return solve(c, in, unsettled);
 }
 
+/* Line by line, of which the parts are many. */
+static void print_messages(const message_log *log) {
+  char line[BUFSIZ];
+  setvbuf(stderr, line, _IOLBF, sizeof line);
+  message_print(log, stderr);
+  fflush(stderr);
+  setvbuf(stderr, NULL, _IONBF, 0);
+}
+
 static status run_job(const command *c, message_log *log, int *unsettled) {
   job_input in = {0};
   const message_mark before = message_now(log);
@@ -51,7 +60,7 @@ static status run_job(const command *c, message_log *log, int *unsettled) {
     message_forget(log, before);
     message_take(log, in.log);
   }
-  message_print(log, stderr);
+  print_messages(log);
   if (in.closing != NULL) fputs(in.closing, stderr);
   job_input_free(&in);
   return st;

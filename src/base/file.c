@@ -36,7 +36,7 @@ int file_descriptor(int folder, const char *path, int flags, const char **why) {
 int file_same(const char *a, const char *b) {
   struct stat one, other;
   if (a == NULL) return 0;
-  if (stat(a, &one) != 0 || stat(b, &other) != 0)
+  if (stat(b, &other) != 0 || stat(a, &one) != 0)
     return errno == ENOENT || errno == ENOTDIR || errno == ELOOP ? 0 : -1;
   return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
 }

@@ -50,12 +50,14 @@ static double group_number(const char *folder, const char *file,
   return number_in(path, word, none);
 }
 
+static const double NO_LIMIT = 1e18; /* more bytes than any limit is */
+
 /* The names of its files, and the word before what files hold of it, which
  * takes the kernel longer to add up than all else here to read. */
 static void memory_of_group(const char *folder, const char *limit,
                             const char *usage, const char *word, limits *l) {
   const double most = group_number(folder, limit, "", INFINITY);
-  if (most == INFINITY) return;
+  if (most > NO_LIMIT) return;
   const double used = group_number(folder, usage, "", 0.0);
   if (most - used >= l->memory) return;
   const double files = group_number(folder, "memory.stat", word, 0.0);

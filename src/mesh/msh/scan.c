@@ -4,7 +4,6 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/system/input.h"
-#include "base/system/limits.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -19,7 +18,9 @@ enum { SHOWN = 24, WORD = 128, DIGITS = 18, POWERS = 27 };
 
 static status read_all(scan *s, int fd) {
   size_t got = 0;
-  PASS_NEW(s->data, s->size + 1);
+  s->data = memory_new(s->size + 1, 1);
+  if (s->data == NULL)
+    RAISE(ERR_MEMORY, "%s: memory exhausted: its %zu bytes", s->path, s->size);
   while (got < s->size) {
     ssize_t n = read(fd, s->data + got, s->size - got);
     if (n < 0 && errno == EINTR) continue;
@@ -33,17 +34,12 @@ static status read_all(scan *s, int fd) {
 
 status scan_open(scan *s, const char *path, status wrong) {
   struct stat about;
-  limits l;
   const char *why;
   *s = (scan){.path = path, .wrong = wrong};
   ENDS_BY(descriptor_leave) int fd = input_open(path, &why);
   if (fd < 0) RAISE(ERR_FILE, "%s: cannot be read: %s", path, why);
   if (fstat(fd, &about) != 0)
     RAISE(ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
-  limits_read("", &l);
-  if ((double)about.st_size > l.memory)
-    RAISE(ERR_MEMORY, "%s: its %lld bytes are more than %s leaves", path,
-          (long long)about.st_size, l.who);
   s->size = about.st_size;
   PASS(read_all(s, fd));
   if (s->size >= 3 && memcmp(s->data, "\xEF\xBB\xBF", 3) == 0) s->at = 3;
