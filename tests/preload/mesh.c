@@ -297,7 +297,8 @@ void *dlopen(const char *file, int flags) {
   void *found = next == NULL ? real("dlopen") : NULL, *asked = NULL;
   if (found != NULL) memcpy(&next, &found, sizeof next);
   if (file != NULL && kept != NULL && strncmp(file, "libgmsh", 7) == 0) {
-    if (sink < 0 && strcmp(program_invocation_short_name, "protis") == 0)
+    const char *name = program_invocation_short_name;
+    if (sink < 0 && (strcmp(name, "protis") == 0 || strcmp(name, "calls") == 0))
       return NULL;
     if (sink >= 0) asked = ask(next, flags);
   }
