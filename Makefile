@@ -19,9 +19,9 @@ browser  := $(drawing) chromium chromium-driver python3-selenium
 
 # Packages first: the variables below ask pkg-config.
 dpkg     := $(shell command -v dpkg-query 2>/dev/null)
-absent    = $(if $(dpkg),$(shell for p in $(1); do \
-              dpkg-query -W -f='$${Status}\n' $$p 2>/dev/null | \
-              grep -q 'ok installed' || echo $$p; done))
+absent    = $(if $(dpkg),$(filter-out $(shell dpkg-query -W \
+              -f='$${Package}=$${Status}\n' $(1) 2>/dev/null | \
+              sed -n 's/=.* ok installed//p'),$(1)))
 missing  := $(call absent,$(packages))
 # Where there is no dpkg: what the compiler must find.
 headers  := cholmod.h umfpack.h lapacke.h cblas.h hdf5.h gmshc.h check.h
@@ -243,7 +243,7 @@ $(out)/tests/preload/mesh.so: src/mesh/raw.h tests/preload/guard.c
 $(out)/tests/preload/%.so: tests/preload/%.c Makefile | $(messages)
 	@mkdir -p $(@D)
 	@echo "  LD   $@"
-	$(Q)$(CC) -std=gnu11 -Isrc -Ibuild -O2 -Wall -Wextra -shared -fPIC $(filter %.c,$^) -o $@ -ldl
+	$(Q)$(CC) -std=gnu11 -Isrc -Ibuild -O3 -Wall -Wextra -shared -fPIC $(filter %.c,$^) -o $@ -ldl
 
 # A fresh machine has no pkg-config when make starts: install, then start anew.
 demo test: deps-drawing

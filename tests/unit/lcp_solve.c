@@ -83,7 +83,7 @@ END_TEST
  * w_1 = 0: z = (1, 1). M is indefinite, and pivoting finds a ray. */
 /* The first tries, short where others follow, end before a ray. */
 START_TEST(proof_is_looked_for_after_short_tries) {
-  lcp_case c = lcp_make(LCP_INFEASIBLE, 200, 5);
+  lcp_case c = lcp_make(LCP_INFEASIBLE, 160, 257);
   const lcp_control control = {.tol = 1e-8};
   lcp_data p = {c.n, c.M, c.q};
   lcp_verdict v;
