@@ -237,7 +237,7 @@ START_TEST(work_of_a_zone_of_stick_that_grows) {
                      "RADIUS=<HALF>\n0., 0.\n"
                      "*GOAL, NAME=DRAG, QUANTITY=FORCE, CONTACT=LINE, "
                      "COMPONENT=1\n",
-                     "-D DT=0.1 -D NC=64");
+                     "-D DT=0.1 -D NC=40");
   check_goal(&j, 0, 4.42286e-3, 0.65, 1.2, 1.0);
   check_goal(&j, 1, 2902.717, 0.6, 1.2, 1.0);
   check_goal(&j, 2, 84.261, 0.6, 1.4, 1.0);

@@ -236,8 +236,12 @@ END_TEST
 START_TEST(auto_comes_to_proximal) {
   job j;
   int code =
-      job_run_with(&j, "input/greco/greco", "", 0, "-D MU=1E6 -D N=68 -D DT=1");
+      job_run_with(&j, "input/greco/greco", "", 0, "-D MU=1E6 -D N=31 -D DT=1");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(
+      strstr(lst, "lemke: cycle of states, proximal: converged"));
+  free(lst);
   job_end(&j);
 }
 END_TEST
