@@ -304,10 +304,11 @@ START_TEST(structured_geometry_is_made_finer) {
     job_write(&j, "square.inp", "*MESH, FILE=square.geo\n%s", square_deck);
     int code = job_shell(&j, "mkdir t && TMPDIR=t protis square && rmdir t");
     ck_assert_msg(code == 0, "%s: exit %d: %s", fixed[k], code, j.errors);
-    ck_assert_int_eq(job_shell(&j, "TMPDIR=square.inp protis square"), 4);
-    ck_assert_msg(
-        strstr(j.errors, "cannot make a folder in square.inp: Not") != NULL,
-        "%s", j.errors);
+    if (k == 0) {
+      ck_assert_int_eq(job_shell(&j, "TMPDIR=square.inp protis square"), 4);
+      ck_assert_ptr_nonnull(
+          strstr(j.errors, "cannot make a folder in square.inp: Not"));
+    }
     job_end(&j);
   }
 }
@@ -542,9 +543,9 @@ START_TEST(forecast_of_a_coarse_mesh) {
   ck_assert_ptr_nonnull(row);
   ck_assert_int_eq(
       strncmp(strchr(row + 1, '\n') - 20, "         -         -", 20), 0);
-  forecast_row(&j, 5, &unknowns, &memory);
+  forecast_row(&j, 10, &unknowns, &memory);
   job_end(&j);
-  ck_assert_int_eq(press_cube(&j, 3, "", "*ACCURACY, TARGET=5\n", ""), 0);
+  ck_assert_int_eq(press_cube(&j, 3, "", "*ACCURACY, TARGET=10\n", ""), 0);
   const double has = job_unknowns(&j);
   ck_assert_msg(unknowns > has / 1.5 && unknowns < has * 1.5, "%g %g", unknowns,
                 has);
