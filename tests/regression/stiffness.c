@@ -15,7 +15,7 @@ const int job_without_fields = 1;
 static const struct {
   const char *deck, *words;
 } decks[] = {
-    {"input/greco/greco", "-D N=16"},
+    {"input/greco/greco", "-D N=10"},
     {"input/block_shear_3d/block_shear_3d", "-D N=4 -D NZ=3"},
     {"input/creep_block/creep_block", ""},
     {"input/lying_block/lying_block_3d", "-D N=6"},
