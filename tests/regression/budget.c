@@ -288,6 +288,23 @@ START_TEST(slip_at_the_start_of_a_step_is_in_its_error) {
 }
 END_TEST
 
+/* Supports that turn too often for half increments leave the error unknown, in
+ * the increment after them too, which has none of its own. */
+START_TEST(error_of_steps_after_one_without_is_unknown) {
+  const square_case s = {
+      "1000., 0.",
+      "",
+      "CPS3",
+      FLOOR(0.3) "*AMPLITUDE, NAME=WAVE\n\"if(t < 1.4, sin(400*t), 1)\"\n",
+      "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -1.E-3\n",
+      "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 1, 1.E-3, WAVE\n"
+      "*ACCURACY, TIME=YES, MESH=NO\n"};
+  job j = square_run(&s, 0);
+  ck_assert(isnan(last_of(&j, TIME_COLUMN)));
+  job_end(&j);
+}
+END_TEST
+
 /* All stresses relax at one rate, and their error with them: one of order 1
  * stays what it is in a step of order 4 that adds almost none. */
 START_TEST(error_of_steps_of_order_1_stays) {
@@ -483,6 +500,7 @@ UNIT_MAIN("budget", error_of_the_steps_is_near_the_true_one,
           error_of_the_steps_is_told_where_a_law_flows,
           sudden_slip_has_no_error_of_steps,
           slip_at_the_start_of_a_step_is_in_its_error,
+          error_of_steps_after_one_without_is_unknown,
           error_of_steps_of_order_1_stays,
           steps_beside_friction_are_those_of_growing_zones,
           increments_are_balanced_with_the_mesh,
