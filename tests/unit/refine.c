@@ -5,6 +5,7 @@
  */
 #include "accuracy/space.h"
 #include "base/base.h"
+#include "mesh/refine/parts.h"
 #include "support/grid.h"
 #include "support/mesh_file.h"
 #include "support/msh_write.h"
@@ -455,7 +456,26 @@ START_TEST(each_refused_request_is_an_error_and_frees_all) {
 }
 END_TEST
 
-UNIT_MAIN("refine", units_change_no_mesh, square_is_refined_to_its_sizes,
+/* Inside linear; beyond an element of the corners on that side alone; where
+ * there is none, any. */
+START_TEST(sizes_are_those_of_the_nearest_corners) {
+  static const double x[] = {0.0, 0.0, 1.0, 0.0, 0.0, 1.0}, at[] = {1, 2, 4};
+  static const double in[] = {0.25, 0.25}, out[] = {1.5, 0.5};
+  static const int elem[] = {0, 1, 2};
+  const size_t before = memory_in_use();
+  for (int n = 0; n < 2; ++n) {
+    size_grid *g;
+    ck_assert_int_eq(size_grid_new(&(refine_sizes){2, n, x, elem, at}, &g), OK);
+    ck_assert_double_eq(size_grid_at(g, in), n ? 2.0 : HUGE_VAL);
+    ck_assert_double_eq(size_grid_at(g, out), n ? 2.5 : HUGE_VAL);
+    memory_free(g);
+  }
+  ck_assert_uint_eq(memory_in_use(), before);
+}
+END_TEST
+
+UNIT_MAIN("refine", sizes_are_those_of_the_nearest_corners,
+          units_change_no_mesh, square_is_refined_to_its_sizes,
           angles_keep_half_of_the_smallest, nothing_gets_larger, box_is_refined,
           surfaces_in_contact_are_followed, thin_elements_are_not_turned_over,
           curved_surfaces_are_followed,
