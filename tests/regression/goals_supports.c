@@ -471,6 +471,21 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
 }
 END_TEST
 
+/* A single closed node, in a plane of symmetry, has neither. */
+START_TEST(single_nodes_have_no_pressure_and_no_width) {
+  job j = of_peak("rect 16 8 1 0.5 alternate", "0.1*(x-1)^2",
+                  "\n*GOAL, NAME=W, QUANTITY=WIDTH, CONTACT=C",
+                  "TOP, 2, 2, -1.E-6\n");
+  ck_assert(goal_has_verdict(&j, "P", "no_zone"));
+  ck_assert(goal_has_verdict(&j, "W", "no_zone"));
+  job_end(&j);
+  j = of_peak("box 4 4 2 1 1 0.5", "0.1*((x-1)^2+y^2)", "",
+              "FRONT, 2\nTOP, 3, 3, -1.E-6\n");
+  ck_assert(goal_has_verdict(&j, "P", "no_zone"));
+  job_end(&j);
+}
+END_TEST
+
 /* Of the border within the radius of a point a part is closed; or it is within
  * that of the node next to it, not of the point. At a node of the border there
  * is no peak. */
@@ -520,5 +535,6 @@ UNIT_MAIN("goals_supports", energy_of_a_ring_that_is_pressed,
           peaks_do_not_jump_where_a_zone_reaches_a_plane,
           peaks_on_few_elements_have_that_of_their_node_in_the_band,
           radius_of_a_zone_that_planes_halve,
+          single_nodes_have_no_pressure_and_no_width,
           means_end_at_a_border_that_is_closed_in_part,
           pressures_at_ends_and_of_an_open_contact)
