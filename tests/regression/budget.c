@@ -225,7 +225,7 @@ TEST(sudden_slip_has_no_error_of_steps) {
   ck_assert_double_lt(last_of(&j, TIME_COLUMN), 1e-4);
 }
 
-/* The same without a law, to both sides: the run has slip less by what the top
+/* Without a law, to either side, or by loads: the run has slip less by what
  * goes back within its first increment, and so has that of half its length. */
 static job drawn(const char *to, double dt) {
   PRINTED(steps,
@@ -250,6 +250,23 @@ TEST(slip_at_the_start_of_a_step_is_as_large_to_both_sides) {
     ck_assert_msg(told > is && told < 2.0 * is, "told %g, is %g", told, is);
   }
 }
+
+/* Supports that turn too often for half increments leave the error unknown, in
+ * the increment after them too, which has none of its own. */
+START_TEST(error_of_steps_after_one_without_is_unknown) {
+  const square_case s = {
+      "1000., 0.",
+      "",
+      "CPS3",
+      FLOOR(0.3) "*AMPLITUDE, NAME=WAVE\n\"if(t < 1.4, sin(400*t), 1)\"\n",
+      "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -1.E-3\n",
+      "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 1, 1.E-3, WAVE\n"
+      "*ACCURACY, TIME=YES, MESH=NO\n"};
+  job j = square_run(&s, 0);
+  ck_assert(isnan(last_of(&j, TIME_COLUMN)));
+  job_end(&j);
+}
+END_TEST
 
 /* All stresses relax at one rate, and their error with them: one of order 1
  * stays what it is in a step of order 4 that adds almost none. */

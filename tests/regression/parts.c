@@ -74,12 +74,13 @@ TEST(target_counts_all_errors_of_the_largest_increment) {
   free(json);
 }
 
-/* Unknowns, increments, CPU seconds and memory of that error. */
-static void forecast_row(const job *j, double level, double row[4]) {
+/* Unknowns, increments, CPU seconds and memory of that error, and the factors
+ * that the last two are expected within. */
+static void forecast_row(const job *j, double level, double row[6]) {
   double found;
   for (const char *at = j->text; at != NULL; at = strchr(at + 1, '\n'))
-    if (sscanf(at, "%lf %lf %lf %lf %lf", &found, &row[0], &row[1], &row[2],
-               &row[3]) == 5 &&
+    if (sscanf(at, "%lf %lf %lf %lf %lf %lf %lf", &found, &row[0], &row[1],
+               &row[2], &row[3], &row[4], &row[5]) == 7 &&
         found == level)
       return;
   ck_abort_msg("no row for %g: %s", level, j->text);

@@ -40,12 +40,12 @@ typedef struct finer_path {
   const char *lost; /* why there is none; NULL: there is one */
   int measured;     /* 1: "error" is that of the attempt */
   path_error error;
-  double factor; /* largest of extrapolation() so far */
-  int sudden;    /* 1: what is applied at the start of the step is to come */
-  waypoint at, middle, end; /* accepted; of the attempt now made */
-  double *d, *Ad;           /* [m] difference of the paths, m; N */
-  double *u, *e0;           /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no
-                               law flows */
+  double factor;    /* largest of extrapolation() so far */
+  int sudden;       /* 1: what is applied at the start of the step is to come */
+  waypoint at, end; /* accepted; of the attempt now made */
+  double *d, *Ad;   /* [m] difference of the paths, m; N */
+  double *u, *e0;   /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no
+                       law flows */
 } finer_path;
 
 typedef struct paths {
@@ -64,7 +64,6 @@ static status waypoint_new(const run *r, waypoint *w) {
 static status path_new(const run *r, finer_path *p) {
   OWNS(p);
   PASS(waypoint_new(r, &p->at));
-  PASS(waypoint_new(r, &p->middle));
   PASS(waypoint_new(r, &p->end));
   PASS_NEW_REALS(r->nodes.n_c, &p->d, &p->Ad);
   if (r->strains.visco != NULL) {
@@ -88,8 +87,8 @@ static status lose(finer_path *p, const char *why) {
   return OK;
 }
 
-/* The equilibrium at t from where "from" stands, into "to"; lost where there is
- * none. */
+/* The equilibrium at t from where "from" stands, into "to", which may be the
+ * same; lost where there is none. */
 static status half(run *r, finer_path *p, waypoint *from, double t,
                    waypoint *to) {
   if (p->lost) return OK;
@@ -146,9 +145,8 @@ static status pass_turns(run *r, finer_path *p, double t) {
   if (!all) return lose(p, "the loads turn too often in an increment");
   waypoint *from = &p->at;
   for (int i = 0; i <= list.n; ++i) {
-    waypoint *to = (list.n - i) % 2 == 0 ? &p->end : &p->middle;
-    PASS(half(r, p, from, i < list.n ? list.at[i] : t, to));
-    from = to;
+    PASS(half(r, p, from, i < list.n ? list.at[i] : t, &p->end));
+    from = &p->end;
   }
   return OK;
 }

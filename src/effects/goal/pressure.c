@@ -387,6 +387,8 @@ static status place_on_line(const run *r, const goal_card *g, int peak,
   w->radius = g->radius > 0.0 ? g->radius : half_of(r, &l, first, last);
   if (at_border && !mirrored)
     f->why = GOAL_NO_PEAK;
+  else if (last == first)
+    f->why = GOAL_NO_ZONE;
   else if (!at_border && g->n_point == 0)
     refine_peak(r, &l, w);
   if (g->n_point > 0)
@@ -730,6 +732,7 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
   int end[2];
   zone_ends z;
   zone_of(r, l, &end[0], &end[1]);
+  if (end[1] == end[0]) f->why = GOAL_NO_ZONE;
   for (int k = 0; k < 2; ++k)
     if (!start_end(r, l, k, end[k], w, &z)) f->why = GOAL_NO_END;
   if (f->why != GOAL_RELIABLE) return OK;
