@@ -26,9 +26,11 @@
  *
  * For the goals there are two runs more, on meshes refined for all of them
  * (aims.c). The error of a goal goes like N^(-p), p from these two near that of
- * its second order, 2/dim; of the finer mesh it takes the share of the elements
- * that it needs for itself. The passes of its target cost that of the deck and
- * two like the last one.
+ * its second order, 2/dim, in space not less: there the first meshes do not
+ * resolve edges and ends of contact, and later passes gain more; where it does
+ * not fall nothing is told. Of the finer mesh it takes the share of the
+ * elements that it needs for itself. The passes of its target cost that of the
+ * deck and two like the last one.
  */
 #include "effects/rows.h"
 #include "program/job.h"
@@ -498,6 +500,13 @@ static double doubt_of_goal(const model_of_cost *c, const goal_fit *g,
          (g->fine->found.verdict == GOAL_CANCELS ? CANCELS_DOUBT : 1.0);
 }
 
+static const double levels[] = {1.0, 0.1, 0.01}; /* % */
+
+/* 1: the error of a goal falls from pass to pass, or is less than any level. */
+static int goal_falls(const pass_goal *before, const pass_goal *now) {
+  return now->off < 0.99 * before->off || pass_goal_percent(now) <= levels[2];
+}
+
 /* What an error of so many % would cost. */
 static void print_level(const model_of_cost *c, const goal_fit *g,
                         double percent) {
@@ -506,12 +515,15 @@ static void print_level(const model_of_cost *c, const goal_fit *g,
   double order = -exponent(g->coarse->off, g->fine->off, c->coarse.unknowns,
                            c->fine.unknowns);
   order = order > 0.0 ? within(0.5 * full, order, 1.1 * full) : full;
+  const double later = c->dim == 3 ? fmax(order, full) : order;
   double unknowns =
-      c->fine.unknowns * g->share * pow(g->fine->off / off, 1.0 / order);
+      c->fine.unknowns * g->share * pow(g->fine->off / off, 1.0 / later);
   unknowns = fmax(unknowns, c->deck.unknowns);
   printf("; %g %%: ", percent);
   if (pass_goal_percent(g->now) <= percent)
     printf("reached already");
+  else if (!goal_falls(g->coarse, g->fine))
+    printf("not known from meshes so coarse");
   else if (unknowns > MOST_UNKNOWNS)
     printf("out of reach");
   else
@@ -524,7 +536,6 @@ static void print_level(const model_of_cost *c, const goal_fit *g,
 /* n: runs after that of the deck. */
 static status print_goals(const model_of_cost *c, aims *a, const model *m,
                           const mesh *msh, int n) {
-  static const double levels[] = {1.0, 0.1, 0.01}; /* % */
   printf("  goals: TARGET= of each alone\n");
   for (int i = 0; i < m->n.goal; ++i) {
     const pass_goal *row = aims_rows(a) + i;
@@ -546,12 +557,14 @@ static status print_goals(const model_of_cost *c, aims *a, const model *m,
   return OK;
 }
 
-/* 1: some goal had no estimate after pass number "pass". */
-static int lacks_estimate(const aims *a, const model *m, int pass) {
-  const pass_goal *g = aims_rows(a) + pass * m->n.goal;
-  int lacks = 0;
-  for (int i = 0; i < m->n.goal; ++i) lacks |= isnan(g[i].off);
-  return lacks;
+/* 1: before the last of n passes some goal had no estimate, or its error is no
+ * smaller since. */
+static int is_too_early(const aims *a, const model *m, int n) {
+  const pass_goal *last = aims_rows(a) + n * m->n.goal;
+  int early = 0;
+  for (int i = 0; i < m->n.goal; ++i)
+    early |= !goal_falls(last + i - m->n.goal, last + i);
+  return early;
 }
 
 /* now: of the mesh of the deck, with its goals. A mesh on which some goal has
@@ -567,7 +580,7 @@ static status forecast_goals(const command *c, job_input *in, trial *now) {
   int n = 0;
   space_lengths(in->msh, length);
   const mesh_sizes first = {in->msh, length};
-  while (n < LEAST || (n < MOST && lacks_estimate(now->goals, in->m, n - 1) &&
+  while (n < LEAST || (n < MOST && is_too_early(now->goals, in->m, n) &&
                        s[(n + 1) % 2].t.unknowns < GROWN * now->unknowns)) {
     stand *to = &s[n % 2], *from = &s[(n + 1) % 2];
     stand_free(to);

@@ -333,6 +333,27 @@ TEST(forecasts_of_goals_are_near_the_passes) {
   }
 }
 
+/* In space errors of coarse meshes fall slower than by the second order (44
+ * times the unknowns for a tenth), or not at all (75,000 "within 2.2"). */
+START_TEST(forecasts_in_space_are_of_the_second_order) {
+  job j;
+  int code = run_with(&j, "input/lying_block/lying_block_3d",
+                      "*GOAL, NAME=WORK, QUANTITY=ENERGY\n", "",
+                      "--estimate-cost -D N=2");
+  OK_OR_STOP(code, j);
+  const double more = forecast(&j, "WORK", "0.1") / forecast(&j, "WORK", "1");
+  ck_assert_msg(more > 30.0 && more < 34.0, "%g times the unknowns", more);
+  job_end(&j);
+  code = run_with(&j, "input/hertz_sphere/hertz_sphere_3d",
+                  "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=POLE\n", "",
+                  "--estimate-cost -D NC=1");
+  OK_OR_STOP(code, j);
+  ck_assert_ptr_nonnull(
+      strstr(j.text, "; 1 %: not known from meshes so coarse"));
+  job_end(&j);
+}
+END_TEST
+
 /* A goal that no mesh has an estimate of: its passes stay small. */
 TEST(forecast_of_no_estimate_takes_little_memory) {
   JOB j;

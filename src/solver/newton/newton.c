@@ -52,7 +52,7 @@ typedef struct newton_work {
   newton_system *system;         /* where A is known, else NULL */
   operated_system *operated;     /* where it is an operator, else NULL */
   compliance_system *compliance; /* where only W is known, else NULL */
-  node_blocks *blocks;
+  node_blocks *blocks;           /* NULL: not used yet */
   best_iterate best;
   uint64_t seen[HISTORY]; /* hashes of the patterns of the attempt */
 } newton_work;
@@ -67,7 +67,6 @@ static status newton_setup(const contact_problem *cp, const void *par,
     PASS(newton_system_new(cp, &w->system));
   else
     PASS(compliance_system_new(cp, &w->compliance));
-  if (cp->op == NULL) PASS(node_blocks_new(cp, &w->blocks));
   return best_iterate_new(cp->m, &w->best);
 }
 
@@ -80,7 +79,7 @@ typedef struct run {
   double scale;       /* contact_scale, N (m) */
   int steps;          /* made so far */
   int singular;       /* the last system needed springs */
-  status failed;      /* of a step, ERR_MEMORY: the method ends */
+  status failed;      /* of a step or sweeps, ERR_MEMORY: the method ends */
   linear_work linear; /* of a step, where somebody listens */
 } run;
 
@@ -250,7 +249,9 @@ static void return_to_best(run *s) {
 }
 
 /* The guess after some sweeps of relaxation, each node solved exactly. */
-static void relax(run *s) {
+static status relax(run *s) {
+  OWNS(s->w);
+  if (s->w->blocks == NULL) PASS(node_blocks_new(s->cp, &s->w->blocks));
   relaxation x = {
       .cp = s->cp, .blocks = s->w->blocks, .u = s->u, .r = s->r, .omega = 1.0};
   solver_take_best(&s->w->best, s->cp->m, s->u, s->r);
@@ -259,6 +260,7 @@ static void relax(run *s) {
   for (int k = 0; k < SWEEPS; ++k) relaxation_sweep(&x, 0);
   set_raw(s);
   states_next(s->st, 1);
+  return OK;
 }
 
 /* 1: no further attempt; without B the problem is convex. */
@@ -279,8 +281,9 @@ static outcome newton_run(run *s, const newton *p) {
   states_all_stick(s->st);
   if (states_hash(s->st) != begun) o = first = attempt(s, limit);
   if (final(s, o)) return o;
-  if (s->w->blocks != NULL) {
-    relax(s);
+  if (s->cp->op == NULL) {
+    s->failed = relax(s);
+    if (s->failed != OK) return STOPPED_NAN;
     o = attempt(s, limit);
     if (final(s, o)) return o;
   }
