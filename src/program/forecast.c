@@ -567,8 +567,9 @@ static int is_too_early(const aims *a, const model *m, int n) {
   return early;
 }
 
-/* now: of the mesh of the deck, with its goals. A mesh on which some goal has
- * no estimate yet is followed by another, up to GROWN times the first. */
+/* now: of the mesh of the deck, with its goals. Where some goal had no
+ * estimate, or the error of one does not fall, another mesh follows, up to
+ * GROWN times the first. */
 static status forecast_goals(const command *c, job_input *in, trial *now) {
   enum { LEAST = 2, MOST = 4, GROWN = 8 };
   static const double part = 0.3;

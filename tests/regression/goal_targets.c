@@ -335,7 +335,7 @@ TEST(forecasts_of_goals_are_near_the_passes) {
 
 /* In space errors of coarse meshes fall slower than by the second order (44
  * times the unknowns for a tenth), or not at all (75,000 "within 2.2"). */
-START_TEST(forecasts_in_space_are_of_the_second_order) {
+TEST(forecasts_in_space_are_of_the_second_order) {
   job j;
   int code = run_with(&j, "input/lying_block/lying_block_3d",
                       "*GOAL, NAME=WORK, QUANTITY=ENERGY\n", "",
@@ -352,7 +352,6 @@ START_TEST(forecasts_in_space_are_of_the_second_order) {
       strstr(j.text, "; 1 %: not known from meshes so coarse"));
   job_end(&j);
 }
-END_TEST
 
 /* A goal that no mesh has an estimate of: its passes stay small. */
 TEST(forecast_of_no_estimate_takes_little_memory) {

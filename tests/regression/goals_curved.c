@@ -79,6 +79,7 @@ static void check_body(const char *geo, const char *section, const char *z,
   check_goal(&t, 2, c->along * c->u(2.0), 0.15);
   check_goal(&t, 3, 50.0 * c->area * c->u(1.0), 0.1);
   if (c->u == of_ring) check_goal(&t, 4, 20.0, 0.1);
+  if (c->u == of_core) check_goal(&t, 4, -16.8 / 0.82, 0.1);
 }
 
 #define PRESSED "*DSLOAD\nINNER, P, 100.\n"

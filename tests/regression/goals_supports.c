@@ -433,7 +433,7 @@ TEST(radius_of_a_zone_that_planes_halve) {
 }
 
 /* A single closed node, in a plane of symmetry, has neither. */
-START_TEST(single_nodes_have_no_pressure_and_no_width) {
+TEST(single_nodes_have_no_pressure_and_no_width) {
   job j = of_peak("rect 16 8 1 0.5 alternate", "0.1*(x-1)^2",
                   "\n*GOAL, NAME=W, QUANTITY=WIDTH, CONTACT=C",
                   "TOP, 2, 2, -1.E-6\n");
@@ -445,7 +445,6 @@ START_TEST(single_nodes_have_no_pressure_and_no_width) {
   ck_assert(goal_has_verdict(&j, "P", "no_zone"));
   job_end(&j);
 }
-END_TEST
 
 /* Of the border within the radius of a point a part is closed; or it is within
  * that of the node next to it, not of the point. At a node of the border there

@@ -234,6 +234,14 @@ TEST(increments_too_long_are_refused) {
       run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing -D DT=0.1"),
       0);
   check_depth(&j, 0.002 * 3 * 10);
+  ck_assert_str_eq(j.errors, "");
+  /* Beyond 1 it wears off more than is pressed together. */
+  ck_assert_int_eq(
+      run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing -D DT=0.4"),
+      0);
+  ck_assert_msg(strstr(j.errors, "warning P2051: step 2, time 1.4") != NULL,
+                "%s", j.errors);
+  ck_assert_ptr_nonnull(strstr(j.errors, "\n1 warning\n"));
 }
 
 /* What did not converge is told as that, whatever it would wear. */

@@ -4,6 +4,8 @@
  * were, and no worse in shape than half of the smallest angle.
  */
 #include "accuracy/space.h"
+#include "base/base.h"
+#include "mesh/refine/parts.h"
 #include "support/grid.h"
 #include "support/mesh_file.h"
 #include "support/msh_write.h"
@@ -388,6 +390,23 @@ TEST(each_refused_request_is_an_error_and_frees_all) {
   UNIT_REFUSED(0, mesh_read_gmsh(&source, &at, log, &r),
                ck_assert((r == NULL) == refused);
                memory_free(r));
+}
+
+/* Inside linear; beyond an element of the corners on that side alone; where
+ * there is none, any. */
+TEST(sizes_are_those_of_the_nearest_corners) {
+  static const double x[] = {0.0, 0.0, 1.0, 0.0, 0.0, 1.0}, at[] = {1, 2, 4};
+  static const double in[] = {0.25, 0.25}, out[] = {1.5, 0.5};
+  static const int elem[] = {0, 1, 2};
+  const size_t before = memory_in_use();
+  for (int n = 0; n < 2; ++n) {
+    size_grid *g;
+    ck_assert_int_eq(size_grid_new(&(refine_sizes){2, n, x, elem, at}, &g), OK);
+    ck_assert_double_eq(size_grid_at(g, in), n ? 2.0 : HUGE_VAL);
+    ck_assert_double_eq(size_grid_at(g, out), n ? 2.5 : HUGE_VAL);
+    memory_free(g);
+  }
+  ck_assert_uint_eq(memory_in_use(), before);
 }
 
 UNIT_MAIN("refine")
