@@ -244,7 +244,7 @@ TEST(slip_at_the_start_of_a_step_is_in_its_error) {
                                    "*BOUNDARY\nTOP, 1, 1, -1.E-3, BACK\n",
                                    "*DSLOAD\nRIGHT, P, 0.5, BACK\n"};
   for (int k = 0; k < 3; ++k) {
-    JOB j = drawn(by[k], 0.25), fine = drawn(by[k], 1.0 / 128);
+    JOB j = drawn(by[k], 0.25), fine = drawn(by[k], 1.0 / 64);
     const double told = figure(&j, "time_error_percent");
     const double is = job_difference(&j, &fine, -1);
     ck_assert_msg(told > is && told < 2.0 * is, "told %g, is %g", told, is);
