@@ -127,7 +127,7 @@ typedef struct course {
 /* 1: solved, and a further step would change nothing or little, or is more than
  * the tolerance requires. On the round cone of three dimensions one within the
  * tolerance is still quadratic: it turns the forces of slipping nodes exactly
- * against their slip. */
+ * against their slip, unless nothing is left. */
 static int solved(const run *s, course *c, double residual) {
   const int within = residual <= s->control->tol;
   const int linear =
@@ -135,7 +135,7 @@ static int solved(const run *s, course *c, double residual) {
   if (solver_few_digits(s->control->tol)) return within;
   int rests = (linear && c->changes == 0) || c->settled;
   c->settled = within;
-  return within && rests;
+  return within && (rests || residual == 0.0);
 }
 
 /* 1: no lower residual for long. */
