@@ -238,9 +238,9 @@ static int most_moved(int m, const double *left) {
   return at;
 }
 
-/* Gauss elimination with pivots: a pinned motion leaves the others. What the
- * others move an unknown by is not smaller than 1 / sqrt(m) for the next pivot,
- * so that its square may be found by subtraction. */
+/* Gram-Schmidt of the rows of Q with pivots: a pinned motion leaves the others.
+ * What these move the next pivot by is not less than 1 / sqrt(m), so that its
+ * square may be found by subtraction. */
 status rigid_pin(const rigid_motions *r, const rigid_set *s,
                  unsigned char *pinned) {
   enum { PASSES = 2 };

@@ -618,11 +618,13 @@ static void add_interface(const run *r, const patch *p, int back,
 }
 
 status goal_add_interfaces(const run *r, const space_recovery *of, double *dF,
-                           const goal_shared *to) {
+                           goal_shared *to) {
   run seen = *r;
   mesh sides;
   int *back;
   if (space_regions(of) < 2) return OK;
+  PASS_NEW_ALL(OF(to->volume, r->msh->n_elem),
+               OF(to->strain, (size_t)r->m->ns * r->msh->n_elem));
   SCRATCH;
   PASS(between_regions(r->msh, of, &sides, &back));
   seen.msh = &sides;

@@ -179,8 +179,6 @@ static status prepare(run *r, goal_state *own, shared *s) {
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);
   PASS(goal_add_boundary(r, s->lacks));
-  PASS_NEW_ALL(OF(s->form.of_all.volume, r->msh->n_elem),
-               OF(s->form.of_all.strain, (size_t)r->m->ns * r->msh->n_elem));
   PASS(goal_add_interfaces(r, recovery, s->lacks, &s->form.of_all));
   PASS(goal_add_thermal(r, s->lacks, &s->rest));
   s->form.of_all.rest = s->rest;

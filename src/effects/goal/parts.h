@@ -93,9 +93,10 @@ status goal_places(const run *r, int **where);
 /* Adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);
 /* The same of curved interfaces between regions, of which the chord moves a
- * part from one to the other; adds to->volume, strain. ERR_MEMORY. */
+ * part from one to the other; to->volume, strain: NULL if there is one region.
+ * ERR_MEMORY. */
 status goal_add_interfaces(const run *r, const space_recovery *of, double *dF,
-                           const goal_shared *to);
+                           goal_shared *to);
 int goal_load_varies(const load *l); /* 1: from place to place */
 /* volume[n_elem] += what of the body is beyond the faces of each element, m3.
  * ERR_MEMORY. */
