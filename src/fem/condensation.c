@@ -79,20 +79,6 @@ static status order_body(condensed *c, const graph *g, int n, int *list,
                      &c->ordering);
 }
 
-/* The motions that only contact holds: c->rigid. A body nothing holds: name it
- * and the motion. */
-static status find_motions(condensed *c) {
-  int n = 0;
-  OWNED_OF(free_motion, list, support_motions(&c->d, &n, &list, &c->rigid));
-  for (int q = 0; q < n; ++q)
-    if (list[q].held_by == HELD_BY_NOTHING)
-      RAISE(ERR_SINGULAR,
-            "body %d (with element %zu) is not held: free %s. Neither "
-            "*BOUNDARY nor contact resists it",
-            list[q].body_id + 1, list[q].elem_no, list[q].text);
-  return OK;
-}
-
 /* The failure of one body, with the node where it broke down. */
 static status name_body(const condensed *c, const body_factor *f, status code) {
   if (code != ERR_SINGULAR) return code;
@@ -285,7 +271,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   NEW(c->load, (size_t)k->dim * k->n_node);
   NEW(c->prescribed, (size_t)k->dim * k->n_node);
   timer_enter_as(STAGE_ORDERING, STAGE_NO_CALL);
-  st = find_motions(c);
+  st = rigid_find(&c->d, &c->rigid);
   if (st == OK) st = pin_sets(c);
   timer_leave(STAGE_ORDERING);
   TRY(st);

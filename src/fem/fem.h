@@ -104,12 +104,14 @@ typedef struct free_motion {
 } free_motion;
 
 /*
- * The free motions of all bodies without solving anything, HELD_BY_NOTHING
- * first in each set of bodies that pairs and ties join; *list is new
- * (memory_free), NULL if there are none. Joined surfaces count as touching: no
- * gap between them resists a turn of the set.
+ * The free motions of all bodies without solving anything: how many there are,
+ * and those that are held by "most" or less, HELD_BY_NOTHING first in each set
+ * of bodies that pairs and ties join; *list[*n] is new (memory_free), NULL if
+ * there are none. Joined surfaces count as touching: no gap between them
+ * resists a turn of the set.
  */
-status domain_free_motions(const domain *d, int *n, free_motion **list);
+status domain_free_motions(const domain *d, motion_hold most, int *n_free,
+                           int *n, free_motion **list);
 
 /*
  * Order (contact unknowns last), factor K (where contact alone holds a body
@@ -118,7 +120,7 @@ status domain_free_motions(const domain *d, int *n, free_motion **list);
  *   A = K_cc - K_ci inv(K_ii) K_ic   [m*m], m = rows * condensed nodes.
  * Bodies are factored apart. K is borrowed until condensed_free.
  * ERR_SINGULAR: a body that neither supports nor contact hold (the record names
- * body and motion), or K not positive definite. ERR_MEMORY.
+ * one), or K not positive definite. ERR_MEMORY.
  */
 status condense(const stiffness *k, const domain *d, condensed **out);
 void condensed_free(condensed *c);

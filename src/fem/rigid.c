@@ -12,7 +12,7 @@
 #include <cblas.h>
 
 /* Motions that move the contact unknowns less than this part of what they
- * share with the motions before them are left out. */
+ * share with the motions before them are free. */
 static const double least_part = 1e-10;
 /* Leverages that count as equal: the first unknown is taken. */
 static const double tie = 1e-6;
@@ -76,12 +76,11 @@ static void extend(const domain *d, int node, box *b) {
   b->found = 1;
 }
 
-/* Boxes round the nodes of each body that move contact unknowns of the set. 0:
- * no contact node. */
-static int measure_contact(const stiffness *k, const domain *d,
-                           const rigid_motions *r, const rigid_set *s,
-                           box *of) {
-  int found = 0, node;
+/* Boxes round the nodes of each body that move contact unknowns of the set. */
+static void measure_contact(const stiffness *k, const domain *d,
+                            const rigid_motions *r, const rigid_set *s,
+                            box *of) {
+  int node;
   for (int t = 0; t < s->n_node; ++t) {
     const int q = k->contact[s->node[t]];
     const component x = node_component(d, s->node[t], q, 0);
@@ -89,10 +88,8 @@ static int measure_contact(const stiffness *k, const domain *d,
     for (int e = 0; q >= 0 && e < n; ++e) {
       component_term(&x, e, &node);
       if (r->column[node] >= 0) extend(d, node, &of[r->body[node]]);
-      found = 1;
     }
   }
-  return found;
 }
 
 /* About the centre of the box; the extent is that of the body if the box has
@@ -145,28 +142,27 @@ static double inner(int n, const double *a, const double *b) {
 }
 
 /* Make the columns of a set orthonormal; the motions follow. */
-static void gram_schmidt(const rigid_motions *r, rigid_set *s) {
+static status gram_schmidt(const rigid_motions *r, const rigid_set *s) {
   const size_t m = r->m, n = s->n;
   double *Q = r->Q + m * s->first;
-  int kept = 0;
   for (int j = 0; j < s->k; ++j) {
-    double *q = Q + m * kept, *y = s->Y + n * kept;
-    memmove(q, Q + m * j, m * sizeof *q);
-    memmove(y, s->Y + n * j, n * sizeof *y);
+    double *q = Q + m * j, *y = s->Y + n * j;
     const double before = inner(r->m, q, q);
-    for (int i = 0; i < kept; ++i) {
+    for (int i = 0; i < j; ++i) {
       const double part = inner(r->m, Q + m * i, q);
       cblas_daxpy(r->m, -part, Q + m * i, 1, q, 1);
       cblas_daxpy(s->n, -part, s->Y + n * i, 1, y, 1);
     }
     const double norm = sqrt(inner(r->m, q, q));
-    if (!(norm > least_part * sqrt(before))) continue;
+    if (!(norm > least_part * sqrt(before)))
+      RAISE(ERR_SINGULAR,
+            "body %d is not held: neither *BOUNDARY nor contact resists one "
+            "of its motions",
+            s->owner[0] + 1);
     cblas_dscal(r->m, 1 / norm, q, 1);
     cblas_dscal(s->n, 1 / norm, y, 1);
-    ++kept;
   }
-  for (int j = kept; j < s->k; ++j) CLEAR(Q + m * j, m);
-  s->k = kept;
+  return OK;
 }
 
 /* The motion y[modes] about the centre and with the size of another, "to". */
@@ -212,7 +208,7 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
   PASS_NEW_ALL(OF(r->Q, (size_t)r->m * r->k), OF(of, r->n_body));
   for (EACH(rigid_set, s, r->set, r->n_set)) {
     PASS_NEW(s->load, s->n);
-    if (!measure_contact(k, d, r, s, of)) s->k = 0;
+    measure_contact(k, d, r, s, of);
     centre_motions(r, of, s);
   }
   for (int b = 0; b < r->n_body; ++b)
@@ -220,7 +216,7 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
   for (int pass = 0; pass < PASSES; ++pass)
     for (int t = 0; t < r->n_set; ++t) {
       contact_motions(k, d, r, &r->set[t]);
-      gram_schmidt(r, &r->set[t]);
+      PASS(gram_schmidt(r, &r->set[t]));
     }
   return OK;
 }

@@ -65,12 +65,12 @@ typedef struct rigid_motions {
   double *Q; /* [m*k] R_c of orthonormal motions */
 } rigid_motions;
 
-/* domain_free_motions. r (or NULL): all-zero before, filled with the sets that
- * have some. */
-status support_motions(const domain *d, int *n, free_motion **list,
-                       rigid_motions *r);
+/* The motions that supports, hinges and ties leave; r: all-zero before, filled
+ * with the sets that have some. */
+status rigid_find(const domain *d, rigid_motions *r);
 
-/* Choose the motions Y so that their R_c is orthonormal, and store it. */
+/* Choose the motions Y so that their R_c is orthonormal, and store it.
+ * ERR_SINGULAR: one of them moves no contact unknown. */
 status rigid_orthonormalise(const stiffness *k, const domain *d,
                             rigid_motions *r);
 /* Contact unknowns to hold a set, as many as its motions and as independent as

@@ -622,6 +622,94 @@ static status append_motions(finder *f, motion_hold hold, motion_list *list) {
   return OK;
 }
 
+/* What supports, hinges and ties leave a set. */
+static status supported_space(const body_sets *s, int id, int closed,
+                              triangle *t, null_basis *z) {
+  PASS(triangle_new(s, id, closed, t));
+  add_supports(t);
+  return null_space(t, z);
+}
+
+static status find_spaces(const body_sets *s, int id, motion_hold most,
+                          finder *f) {
+  PASS(supported_space(s, id, 1, &f->t, &f->of[HELD_BY_CONTACT]));
+  const int n = f->t.n;
+  if (f->of[HELD_BY_CONTACT].rank == 0) return OK;
+  for (int by = HELD_BY_CONTACT; by > HELD_BY_NOTHING; --by) {
+    add_contact(&f->t, (motion_hold)by);
+    if (by - 1 <= (int)most) PASS(null_space(&f->t, &f->of[by - 1]));
+  }
+  PASS_NEW_ALL(OF(f->known, (size_t)n * n), OF(f->rest, n), OF(f->part, n));
+  return OK;
+}
+
+static status set_motions(const body_sets *s, int id, motion_hold most,
+                          motion_list *list, int *n_free) {
+  OWNED_PARTS(finder, f, find_spaces(s, id, most, &f));
+  *n_free += f.of[HELD_BY_CONTACT].rank;
+  if (f.of[HELD_BY_CONTACT].rank == 0) return OK;
+  for (int hold = HELD_BY_NOTHING; hold <= (int)most; ++hold)
+    PASS(append_motions(&f, (motion_hold)hold, list));
+  return OK;
+}
+
+/* 1: supports, hinges and ties leave the set no motion. */
+static status is_at_rest(const body_sets *s, int id, unsigned char *rest) {
+  null_basis z;
+  OWNED_PARTS(triangle, t, supported_space(s, id, 1, &t, &z));
+  *rest = z.rank == 0;
+  return OK;
+}
+
+/* Bodies that their supports hold leave first, then those tied to them. */
+static status drop_bodies_at_rest(body_sets *s) {
+  OWNED_NEW(unsigned char, rest, s->p.n_body);
+  for (int by = NOTHING; by <= TIES; ++by) {
+    sets_join(s, (joint)by);
+    for (int id = 0; id < s->p.n_body; ++id)
+      if (s->set[id] == id) PASS(is_at_rest(s, id, &rest[id]));
+    for (int b = 0; b < s->p.n_body; ++b)
+      if (s->set[b] >= 0 && rest[s->set[b]]) s->set[b] = -1;
+  }
+  return OK;
+}
+
+static status moving_sets(const domain *d, body_sets *s) {
+  PASS(sets_find(d, s));
+  if (sets_linked(s)) PASS(drop_bodies_at_rest(s));
+  sets_join(s, TIES_AND_PAIRS);
+  return OK;
+}
+
+status domain_free_motions(const domain *d, motion_hold most, int *n_free,
+                           int *n, free_motion **list) {
+  motion_list found = {0};
+  *n = *n_free = 0;
+  *list = NULL;
+  OWNED_PARTS(body_sets, s, moving_sets(d, &s));
+  for (int id = 0; id < s.p.n_body; ++id) {
+    const status st =
+        s.set[id] == id ? set_motions(&s, id, most, &found, n_free) : OK;
+    *list = found.item;
+    if (st != OK) return st;
+  }
+  *n = found.n;
+  return OK;
+}
+
+/* ---- motions for the condensed problem ----------------------------------- */
+
+static status keep_places(const body_sets *s, rigid_motions *r) {
+  const size_t n_body = s->p.n_body;
+  const int n_node = s->d->mesh->n_node;
+  r->n_body = s->p.n_body;
+  PASS_NEW_ALL(OF(r->at, n_body), OF(r->body, n_node), OF(r->column, n_node));
+  COPY(r->at, s->at, n_body);
+  COPY(r->body, s->body, n_node);
+  for (int i = 0; i < n_node; ++i) r->column[i] = sets_node_column(s, i);
+  return OK;
+}
+
 static status add_set(const triangle *t, const null_basis *z,
                       rigid_motions *r) {
   const body_sets *s = t->s;
@@ -640,94 +728,17 @@ static status add_set(const triangle *t, const null_basis *z,
   return OK;
 }
 
-/* Store what supports, hinges and ties leave, the gaps of ties counted: their
- * masters pull where they are. */
-static status keep_motions(const finder *f, rigid_motions *r) {
-  if (f->t.s->d->ties == NULL)
-    return add_set(&f->t, &f->of[HELD_BY_CONTACT], r);
-  OWNED_PARTS(triangle, t, triangle_new(f->t.s, f->t.id, 0, &t));
-  add_supports(&t);
-  OWNED_PARTS(null_basis, z, null_space(&t, &z));
-  if (z.rank > 0) PASS(add_set(&t, &z, r));
-  return OK;
+/* The gaps of ties count: their masters pull where they are. */
+static status add_motions(const body_sets *s, int id, rigid_motions *r) {
+  null_basis z;
+  OWNED_PARTS(triangle, t, supported_space(s, id, s->d->ties == NULL, &t, &z));
+  return z.rank > 0 ? add_set(&t, &z, r) : OK;
 }
 
-static status find_spaces(const body_sets *s, int id, finder *f) {
-  PASS(triangle_new(s, id, 1, &f->t));
-  const int n = f->t.n;
-  add_supports(&f->t);
-  PASS(null_space(&f->t, &f->of[HELD_BY_CONTACT]));
-  if (f->of[HELD_BY_CONTACT].rank == 0) return OK;
-  for (int by = HELD_BY_CONTACT; by > HELD_BY_NOTHING; --by) {
-    add_contact(&f->t, (motion_hold)by);
-    PASS(null_space(&f->t, &f->of[by - 1]));
-  }
-  PASS_NEW_ALL(OF(f->known, (size_t)n * n), OF(f->rest, n), OF(f->part, n));
+status rigid_find(const domain *d, rigid_motions *r) {
+  OWNED_PARTS(body_sets, s, moving_sets(d, &s));
+  PASS(keep_places(&s, r));
+  for (int id = 0; id < s.p.n_body; ++id)
+    if (s.set[id] == id) PASS(add_motions(&s, id, r));
   return OK;
-}
-
-static status set_motions(const body_sets *s, int id, motion_list *list,
-                          rigid_motions *r) {
-  OWNED_PARTS(finder, f, find_spaces(s, id, &f));
-  if (f.of[HELD_BY_CONTACT].rank == 0) return OK;
-  if (r != NULL) PASS(keep_motions(&f, r));
-  for (int hold = HELD_BY_NOTHING; hold <= HELD_BY_CONTACT; ++hold)
-    PASS(append_motions(&f, (motion_hold)hold, list));
-  return OK;
-}
-
-/* 1: supports, hinges and ties leave the set no motion. */
-static status is_at_rest(const body_sets *s, int id, unsigned char *rest) {
-  OWNED_PARTS(triangle, t, triangle_new(s, id, 1, &t));
-  add_supports(&t);
-  OWNED_PARTS(null_basis, z, null_space(&t, &z));
-  *rest = z.rank == 0;
-  return OK;
-}
-
-/* Bodies that their supports hold leave first, then those tied to them. */
-static status drop_bodies_at_rest(body_sets *s) {
-  OWNED_NEW(unsigned char, rest, s->p.n_body);
-  for (int by = NOTHING; by <= TIES; ++by) {
-    sets_join(s, (joint)by);
-    for (int id = 0; id < s->p.n_body; ++id)
-      if (s->set[id] == id) PASS(is_at_rest(s, id, &rest[id]));
-    for (int b = 0; b < s->p.n_body; ++b)
-      if (s->set[b] >= 0 && rest[s->set[b]]) s->set[b] = -1;
-  }
-  return OK;
-}
-
-/* What rigid.c needs of the bodies. */
-static status keep_places(const body_sets *s, rigid_motions *r) {
-  const size_t n_body = s->p.n_body;
-  const int n_node = s->d->mesh->n_node;
-  r->n_body = s->p.n_body;
-  PASS_NEW_ALL(OF(r->at, n_body), OF(r->body, n_node), OF(r->column, n_node));
-  COPY(r->at, s->at, n_body);
-  COPY(r->body, s->body, n_node);
-  for (int i = 0; i < n_node; ++i) r->column[i] = sets_node_column(s, i);
-  return OK;
-}
-
-status support_motions(const domain *d, int *n, free_motion **list,
-                       rigid_motions *r) {
-  motion_list found = {0};
-  *n = 0;
-  *list = NULL;
-  OWNED_PARTS(body_sets, s, sets_find(d, &s));
-  if (sets_linked(&s)) PASS(drop_bodies_at_rest(&s));
-  sets_join(&s, TIES_AND_PAIRS);
-  if (r != NULL) PASS(keep_places(&s, r));
-  for (int id = 0; id < s.p.n_body; ++id) {
-    const status st = s.set[id] == id ? set_motions(&s, id, &found, r) : OK;
-    *list = found.item;
-    if (st != OK) return st;
-  }
-  *n = found.n;
-  return OK;
-}
-
-status domain_free_motions(const domain *d, int *n, free_motion **list) {
-  return support_motions(d, n, list, NULL);
 }

@@ -234,8 +234,10 @@ static status refuse_unheld(const run *r, int n, const free_motion *list) {
   return OK;
 }
 
-/* The free motions, by the friction of the step. */
-static status find_motions(const run *r, int *n, free_motion **list) {
+/* The free motions held by "most" or less, by the friction of the step; those
+ * that nothing resists are refused. */
+static status find_motions(const run *r, motion_hold most, int *n_free, int *n,
+                           free_motion **list) {
   domain d = r->body.d;
   OWNED_NEW(unsigned char, rubs, r->m->n.contact);
   for (int i = 0; i < r->m->n.contact; ++i)
@@ -243,14 +245,15 @@ static status find_motions(const run *r, int *n, free_motion **list) {
         rule_has_friction(friction_in_force(r->m, run_step_id(r), i)) != 0;
   d.rubs = rubs;
   timer_enter_as(STAGE_ORDERING, STAGE_NO_CALL);
-  const status st = domain_free_motions(&d, n, list);
+  const status st = domain_free_motions(&d, most, n_free, n, list);
   timer_leave(STAGE_ORDERING);
-  return st;
+  return st == OK ? refuse_unheld(r, *n, *list) : st;
 }
 
-status run_check_supports(const run *r, int *n) {
-  OWNED_OF(free_motion, list, find_motions(r, n, &list));
-  return refuse_unheld(r, *n, list);
+status run_check_supports(const run *r, int *n_free) {
+  int n;
+  OWNED free_motion *list = NULL;
+  return find_motions(r, HELD_BY_TANGENTS, n_free, &n, &list);
 }
 
 status run_motions(run *r, int *n, free_motion **list) {
@@ -258,7 +261,7 @@ status run_motions(run *r, int *n, free_motion **list) {
   PASS(run_build_ties(r));
   if (r->m->effects & EFFECT_CONTACT) PASS(run_build_surface(r));
   r->body.d.surface = r->surface;
-  PASS(find_motions(r, n, list));
-  PASS(refuse_unheld(r, *n, *list));
+  int n_free;
+  PASS(find_motions(r, HELD_BY_CONTACT, &n_free, n, list));
   return effects_prepare(r);
 }

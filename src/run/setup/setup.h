@@ -30,8 +30,9 @@ void run_free(run *r);
  * solved: *list is new (memory_free), NULL if there are none. ERR_SINGULAR with
  * the list if nothing at all resists one. */
 status run_motions(run *r, int *n, free_motion **list);
-/* The same of the current surface; *n: those that contact alone holds. */
-status run_check_supports(const run *r, int *n);
+/* ERR_SINGULAR likewise, of the current surface; *n_free: how many there are.
+ */
+status run_check_supports(const run *r, int *n_free);
 
 /* The largest nodal load at the ends of r->step, which begins with r->old.F, to
  * r->loads.largest; ERR_DECK, of prescribed displacements ERR_SINGULAR: squares
