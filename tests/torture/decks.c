@@ -95,27 +95,41 @@ static void check_deck(tally *t, unsigned long long seed, extent of) {
   fflush(stdout);
 }
 
-TEST(random_decks_hold) {
+/* The random decks: the first, and how many. */
+static long asked(unsigned long long *first) {
+  const char *text = getenv("DECKS");
+  long count = points_number(3, 0.075);
+  *first = getenv("PROTIS_POINTS") == NULL ? 270 : 0;
+  if (text != NULL) sscanf(text, "%ld,%llu", &count, first);
+  return count;
+}
+
+/* check counts the microseconds of a test in 31 bits. */
+static int parts(void) {
+  unsigned long long first;
+  return 1 + (int)(asked(&first) / 500);
+}
+
+TESTS(random_decks_hold, parts()) {
   static const char *const kind[TWINS] = {
       "random decks, 2 threads",  "random decks, units 2^k",
       "random decks, units 1000", "random decks, numbered again",
       "random decks, turned",     "random decks, other methods"};
-  const char *text = getenv("DECKS");
-  unsigned long long first = getenv("PROTIS_POINTS") == NULL ? 270 : 0;
-  long count = points_number(3, 0.075);
+  unsigned long long first;
+  const long count = asked(&first);
+  const int others = _i == 0 && getenv("DECKS") == NULL;
   tally t = {.judged.kind = "random decks, judged",
              .restart.kind = "random decks, restarts"};
   for (int k = 0; k < TWINS; ++k) t.twin[k].kind = kind[k];
   /* Laws, thermal strains and one body, whose energies are judged. */
   static const unsigned long long alone[] = {315, 316, 320, 344};
-  for (size_t k = 0; text == NULL && k < sizeof alone / sizeof *alone; ++k)
+  for (size_t k = 0; others && k < sizeof alone / sizeof *alone; ++k)
     check_deck(&t, alone[k], ALONE);
   static const unsigned long long exact[] = {9,  23, 24, 32, 39, 69,
                                              71, 76, 79, 81, 89, 91};
-  for (size_t k = 0; text == NULL && k < sizeof exact / sizeof *exact; ++k)
+  for (size_t k = 0; others && k < sizeof exact / sizeof *exact; ++k)
     check_deck(&t, exact[k], BITS);
-  if (text != NULL) sscanf(text, "%ld,%llu", &count, &first);
-  for (long k = 0; k < count; ++k)
+  for (long k = _i; k < count; k += parts())
     check_deck(&t, first + (unsigned long long)k, ALL_TWINS);
   printf(
       "methods that gave up: %ld; other answers: %ld; contact nodes: %ld "
