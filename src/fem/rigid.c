@@ -141,20 +141,47 @@ static double inner(int n, const double *a, const double *b) {
   return cblas_ddot(n, a, 1, b, 1);
 }
 
+enum { PANEL = 64 }; /* columns at a time, of sets of many bodies */
+
+/* What the columns before a panel, n_from of them, share with its n_to: W. */
+static void subtract(int rows, double *from, int n_from, const double *W,
+                     int n_to) {
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, rows, n_to, n_from, -1,
+              from, rows, W, n_from, 1, from + (size_t)rows * n_from, rows);
+}
+
+/* Columns first to end of a set orthogonal to those before; W[first*PANEL]. */
+static void leave_span(const rigid_motions *r, const rigid_set *s, int first,
+                       int end, double *W) {
+  const int m = r->m, n = end - first;
+  double *Q = r->Q + (size_t)m * s->first;
+  if (first == 0) return;
+  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, first, n, m, 1, Q, m,
+              Q + (size_t)m * first, m, 0, W, first);
+  subtract(m, Q, first, W, n);
+  subtract(s->n, s->Y, first, W, n);
+}
+
 /* Make the columns of a set orthonormal; the motions follow. */
 static status gram_schmidt(const rigid_motions *r, const rigid_set *s) {
   const size_t m = r->m, n = s->n;
   double *Q = r->Q + m * s->first;
-  for (int j = 0; j < s->k; ++j) {
+  OWNED double *W = NULL, *before = NULL; /* squares of the lengths */
+  PASS_NEW_ALL(OF(W, (size_t)s->k * PANEL), OF(before, s->k));
+  for (int j = 0; j < s->k; ++j) before[j] = inner(r->m, Q + m * j, Q + m * j);
+  for (int j = 0, first = 0; j < s->k; ++j) {
     double *q = Q + m * j, *y = s->Y + n * j;
-    const double before = inner(r->m, q, q);
-    for (int i = 0; i < j; ++i) {
+    if (j % PANEL == 0) {
+      first = j;
+      leave_span(r, s, first, s->k - j < PANEL ? s->k : j + PANEL, W);
+    }
+    for (int i = first; i < j; ++i) {
       const double part = inner(r->m, Q + m * i, q);
       cblas_daxpy(r->m, -part, Q + m * i, 1, q, 1);
       cblas_daxpy(s->n, -part, s->Y + n * i, 1, y, 1);
     }
     const double norm = sqrt(inner(r->m, q, q));
-    if (!(norm > least_part * sqrt(before)))
+    if (!(norm > least_part * sqrt(before[j])))
       RAISE(ERR_SINGULAR,
             "body %d is not held: neither *BOUNDARY nor contact resists one "
             "of its motions",
