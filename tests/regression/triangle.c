@@ -337,6 +337,18 @@ TEST(jump_is_told_after_states_near_equilibrium) {
   }
 }
 
+/* An increment that missed is tried again in halves, with TIME=BALANCED too. */
+TEST(missed_increment_is_halved) {
+  JOB j = pushed_by(1, "0.5, 1.",
+                    "*SOLVER, METHOD=LAGRANGE, MAX_ITER=3\n"
+                    "*ACCURACY, TIME=BALANCED\n");
+  ck_assert_int_eq(job_run(&j, ""), 1);
+  FREED char *sta = job_file(&j, "sta");
+  const char *again = strstr(sta, "\n     2     1   2 ");
+  ck_assert_ptr_nonnull(again);
+  ck_assert_int_eq(strncmp(again + 18, "1.2500E+000 2.5000E-001", 23), 0);
+}
+
 /* A run that goes on just before the jump tells it as one that was not stopped.
  */
 TEST(jump_is_told_by_a_run_that_goes_on) {
