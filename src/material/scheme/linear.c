@@ -190,8 +190,7 @@ status general_map(const flow_kind *k, const scheme_step *p, int exact,
  * takes e_zz too as linear over the step.
  */
 
-/* q1 of EXPONENTIAL: z/2 - z^2/6 + ... where 1 - a/z would cancel. */
-/* 1 - (1 - exp(-z))/z */
+/* q1 of EXPONENTIAL, 1 - (1 - exp(-z))/z: by its series where that cancels. */
 static double relaxing_late_share(double z) {
   double sum = 0.0, term = z / 2;
   if (z > 0.1) return 1.0 + expm1(-z) / z;
