@@ -196,6 +196,12 @@ TEST(exponential_keeps_its_digits) {
     ck_assert_double_eq_tol(b.now.ei[3], exact, 1e-14 * exact);
     point_body_free(&b);
   }
+  /* Two units, far below both times: e^i = (E/8000 + E/3000) e t/2. */
+  start("BURGERS", "8000., 500., 3000.", &from_rest);
+  point_body_run(&b, scheme_find("EXPONENTIAL"), 0.5, 1e-8, 1, NULL);
+  const double early = (1 / 8. + 1 / 3.) * 1e-8 * 1e-8 / 2;
+  ck_assert_double_eq_tol(b.now.ei[3], early, 1e-7 * early);
+  point_body_free(&b);
 }
 
 /* The equations of any elasticity give what those of an isotropic one do, of
