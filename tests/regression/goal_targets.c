@@ -333,6 +333,30 @@ TEST(forecasts_of_goals_are_near_the_passes) {
   }
 }
 
+/* Of two errors the smaller one costs no less; memory goes with the power 4/3
+ * of the unknowns, or the square of the contact unknowns if that is more. */
+static void check_rows(const job *j) {
+  const char *fit = strstr(j->text, "taken as unknowns^");
+  double level, n[2], cpu[2], held[2], power;
+  int rows = 0;
+  ck_assert_ptr_nonnull(fit);
+  ck_assert_int_eq(sscanf(fit, "taken as unknowns^%lf", &power), 1);
+  for (const char *at = j->text; at < fit; at = strchr(at, '\n') + 1) {
+    if (sscanf(at, "%lf %lf %*f %lf %lf", &level, &n[1], &cpu[1], &held[1]) !=
+        4)
+      continue;
+    if (rows++ > 0) {
+      ck_assert_double_ge(cpu[1], cpu[0]);
+      const double more = pow(n[1] / n[0], fmax(4.0 / 3, 2 * power));
+      ck_assert_double_eq_tol(held[1] / held[0], more, 0.04 * more);
+    }
+    n[0] = n[1];
+    cpu[0] = cpu[1];
+    held[0] = held[1];
+  }
+  ck_assert_int_gt(rows, 3);
+}
+
 /* In space errors of coarse meshes fall slower than by the second order (44
  * times the unknowns for a tenth), or not at all (75,000 "within 2.2"). */
 TEST(forecasts_in_space_are_of_the_second_order) {
@@ -343,6 +367,7 @@ TEST(forecasts_in_space_are_of_the_second_order) {
   OK_OR_STOP(code, j);
   const double more = forecast(&j, "WORK", "0.1") / forecast(&j, "WORK", "1");
   ck_assert_msg(more > 30.0 && more < 34.0, "%g times the unknowns", more);
+  check_rows(&j);
   job_end(&j);
   code = run_with(&j, "input/hertz_sphere/hertz_sphere_3d",
                   "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=POLE\n", "",

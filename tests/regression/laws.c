@@ -150,6 +150,10 @@ static const closed_form forms[] = {
     "*TRS\n20., 17.44, 51.6\n", "CPS3", WARM, HELD,
     "*VISCO, INTEGRATOR=RK4\n0.1, 2.\n"},
    "stress_yy", 2, {0, 20}, {2, 1 + .3678794412}, 1e-6},
+  {{SOFT, "*VISCOELASTIC, TIME=PRONY\n0.5, 0.5, " TAU
+    "*TRS\n20., 17.44, 51.6\n", "CPS3", WARM, HELD,
+    "*VISCO, INTEGRATOR=BACKWARD\n0.25, 2.\n"},
+   "stress_yy", 2, {0, 8}, {2, 1 + 0.3897443431}, 1e-8},
   /* hyperbolic sine: 1e-4 sinh(1)^3 under 100, in both spellings */
   {{HARD, "*CREEP, LAW=HYPERB\n1.E-4, 0.01, 3., 0., 8.314\n", "CPS3", "",
     PULL(100.), "*VISCO, INTEGRATOR=EULER\n0.5, 2.\n"}, "ei_yy",

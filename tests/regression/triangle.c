@@ -205,7 +205,7 @@ TEST(all_solutions_are_listed) {
     }
 }
 
-static job pushed(double mu) {
+static job pushed_by(double mu, const char *times, const char *solver) {
   job j = job_begin("triangle");
   job_write(&j, "triangle.msh", "%s", mesh_text);
   job_write(&j, "triangle.inp",
@@ -216,11 +216,13 @@ static job pushed(double mu) {
             "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n"
             "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
             "*CLOAD\nTIP, 2, -1.\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n0.05, 1.\n*CLOAD\nTIP, 1, 3.3\n"
+            "*STEP\n*QUASISTATIC\n%s\n*CLOAD\nTIP, 1, 3.3\n%s"
             "*END STEP\n",
-            mu);
+            mu, times, solver);
   return j;
 }
+
+static job pushed(double mu) { return pushed_by(mu, "0.05, 1.", ""); }
 
 /* Pressed by 1, then pushed: with mu = 2 the vertex sticks until the push is 2
  * and finds no other state near then; with mu = 1.7 it slides and opens. */
@@ -316,6 +318,35 @@ TEST(jump_is_found_in_any_increment_by_any_method) {
   }
   check_jump("AUTO, TOL=BALANCED", 1.0, 0.0, 0);
   check_jump("AUTO, STIFFNESS=FACTOR", 3.0, 0.0, 0);
+}
+
+/* After increments that missed by little the jump is told, at the push of 2;
+ * after one far from equilibrium none is: it would be at another time. */
+TEST(jump_is_told_after_states_near_equilibrium) {
+  for (int k = 0; k < 2; ++k) {
+    JOB j = pushed_by(2, "0.25, 1., 0.25",
+                      k ? "*SOLVER, METHOD=LAGRANGE, MAX_ITER=15\n"
+                        : "*SOLVER, METHOD=LAGRANGE, MAX_ITER=1\n");
+    ck_assert_int_eq(job_run(&j, ""), 1);
+    FREED char *json = job_file(&j, "json");
+    const char *at = strstr(json, "\"jump_time\": ");
+    ck_assert_int_eq(at != NULL, k);
+    if (k)
+      ck_assert_double_eq_tol(atof(at + strlen("\"jump_time\": ")), 1 + 2 / 3.3,
+                              1e-4);
+  }
+}
+
+/* An increment that missed is tried again in halves, with TIME=BALANCED too. */
+TEST(missed_increment_is_halved) {
+  JOB j = pushed_by(1, "0.5, 1.",
+                    "*SOLVER, METHOD=LAGRANGE, MAX_ITER=3\n"
+                    "*ACCURACY, TIME=BALANCED\n");
+  ck_assert_int_eq(job_run(&j, ""), 1);
+  FREED char *sta = job_file(&j, "sta");
+  const char *again = strstr(sta, "\n     2     1   2 ");
+  ck_assert_ptr_nonnull(again);
+  ck_assert_int_eq(strncmp(again + 18, "1.2500E+000 2.5000E-001", 23), 0);
 }
 
 /* A run that goes on just before the jump tells it as one that was not stopped.

@@ -66,9 +66,6 @@ TESTS(depth_under_a_belt, 2) {
   ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect")), 1e-13);
 }
 
-/* Archard at a corner: floor and wall each lose k F s of their own force,
- * pressed with 3 and 1, where the belt passes along both by 1. The block rubs
- * on each by half of what the other presses it together, F/E, before. */
 /* Within the fifth increment of the belt: what four and a half have worn. */
 TEST(depth_at_a_time_point_counts_from_the_start) {
   JOB j = job_begin("block");
@@ -81,6 +78,9 @@ TEST(depth_at_a_time_point_counts_from_the_start) {
     ck_assert_double_eq_tol(dat_at(&w, i, "depth"), 1e-4 * 3 * 4.5, 1e-12);
 }
 
+/* Archard at a corner: floor and wall each lose k F s of their own force,
+ * pressed with 3 and 1, where the belt passes along both by 1. The block rubs
+ * on each by half of what the other presses it together, F/E, before. */
 TEST(each_side_of_a_corner_wears_by_its_own_force) {
   JOB j =
       job_with("block", "tests/regression/mesh/cube.geo",
@@ -104,6 +104,36 @@ TEST(each_side_of_a_corner_wears_by_its_own_force) {
     ck_assert_double_eq_tol(dat_at(&t, i, "worn_volume"),
                             1e-4 * (i == 0 ? 3 * (1 + 0.5e-3) : 1 + 1.5e-3),
                             1e-12);
+}
+
+/* The same in the plane, faces of 0.5 on the floor and 2 at the wall, passed by
+ * 1 and 2: the block follows what has worn off, at the corner too. */
+TEST(block_follows_the_wear_of_a_corner) {
+  JOB j = job_with(
+      "block", "tests/regression/mesh/square.geo",
+      "*PARAMETER\nN = 2\nLY = 4\nKIND = 1\n*MESH, FILE=square.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+      "*AMPLITUDE, NAME=RUN, TIME=TOTAL TIME\n0, 0, 1, 0, 2, 1\n"
+      "*OBSTACLE, NAME=BELT, TYPE=PLANE, AMPLITUDE=RUN\n0, 0\n0, 1\n"
+      "MOVE, 1, 0\n*OBSTACLE, NAME=SIDE, TYPE=PLANE, AMPLITUDE=RUN\n0, 0\n"
+      "1, 0\nMOVE, 0, 2\n*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=BELT\n"
+      "*CONTACT, NAME=WALL, GROUP=LEFT, OBSTACLE=SIDE\n" WORN
+      "*WEAR, CONTACT=WALL, COEFFICIENT=1.E-4\n*STEP\n*QUASISTATIC\n1., 1.\n"
+      "*DSLOAD\nTOP, P, 3.\nRIGHT, P, 1.\n*END STEP\n*STEP\n*QUASISTATIC\n"
+      "1., 1.\n*END STEP\n*STEP\n*QUASISTATIC\n1., 1.\n"
+      "*PRINT, NODES, WEAR\n*END STEP\n");
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
+  DAT n = job_table(&j, "NODES", -1), w = job_table(&j, "WEAR", -1);
+  for (int i = 0; i < n.n_row; ++i) {
+    if (dat_at(&n, i, "y") == 0)
+      ck_assert_double_eq_tol(dat_at(&n, i, "u_y"), -3e-4, 1e-6);
+    if (dat_at(&n, i, "x") == 0)
+      ck_assert_double_eq_tol(dat_at(&n, i, "u_x"), -2e-4, 3e-6);
+  }
+  ck_assert_double_eq_tol(dat_sum(&w, "volume"), 3e-4 + 4 * 2e-4, 1e-5);
+  const int foot = dat_row_near(&w, "x", 1);
+  ck_assert_double_eq_tol(dat_at(&w, foot, "volume"), 0.25 * 3e-4, 1e-7);
 }
 
 /* A wall in x pushes the block of nu = 0 along the floor, LEFT held. */
@@ -229,7 +259,15 @@ TEST(increments_too_long_are_refused) {
   PRINTED(cards, card, 0.002);
   ck_assert_int_eq(
       run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing"), 2);
-  ck_assert_ptr_nonnull(strstr(j.errors, "give increments of dt <="));
+  double factor, dt;
+  const char *told = strstr(j.errors, "of a node by ");
+  ck_assert_ptr_nonnull(told);
+  ck_assert_int_eq(sscanf(told,
+                          "of a node by %lf times their value, above 2 they "
+                          "grow without bound: give increments of dt <= %lf",
+                          &factor, &dt),
+                   2);
+  ck_assert_double_eq_tol(dt * factor, 1, 0.01);
   ck_assert_int_eq(
       run_block(&j, "square", "CPE3", "10, 0", cards, "--no-timing -D DT=0.1"),
       0);

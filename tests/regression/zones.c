@@ -195,4 +195,24 @@ TEST(stick_ends_where_the_contact_or_the_limit_does) {
   }
 }
 
+/* The same in the plane, towards both ends of the line. */
+TESTS(stick_ends_at_either_side, 2) {
+  JOB j = job_with(
+      "square", "tests/regression/mesh/square.geo",
+      "*PARAMETER\nN = 8\nKIND = 1\n*MESH, FILE=square.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+      "*OBSTACLE, NAME=O, TYPE=GAP\n-0.001\n"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n\"sqrt(max(0, %s))\"\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*PRINT, ZONES\n*END STEP\n",
+      _i == 0 ? "0.65 - x" : "x - 0.35");
+  CK_EXIT(job_run(&j, ""), 0, j);
+  DAT z = job_table(&j, "ZONES", -1);
+  const int stick = dat_zone(&z, 2);
+  ck_assert_double_eq_tol(dat_at(&z, stick, "extent"), 0.65, 1e-12);
+  ck_assert_double_eq_tol(dat_at(&z, stick, _i == 0 ? "x_to" : "x_from"),
+                          _i == 0 ? 0.65 : 0.35, 1e-12);
+}
+
 UNIT_MAIN("zones")

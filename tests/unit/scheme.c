@@ -181,6 +181,29 @@ TEST(exponential_is_exact_for_linear_laws) {
   ck_assert_int_ge(laws, 5);
 }
 
+/* From rest at a constant rate, z = dt/tau: e^i = e (1 - (1 - exp(-z))/z) by
+ * its series, to the last digits of steps of any length. */
+TEST(exponential_keeps_its_digits) {
+  static const double z[] = {1e-8, 0.05, 3};
+  static const point_drive from_rest = {.held = {1, 1, 1, 1, 1, 1},
+                                        .e_rate = {0, 0, 0, 1}};
+  for (int k = 0; k < 3; ++k) {
+    long double sum = 0, term = z[k] / 2;
+    for (int i = 3; i < 40; term *= -z[k] / i++) sum += term;
+    start("MAXWELL", "2.", &from_rest);
+    point_body_run(&b, scheme_find("EXPONENTIAL"), 0.5, 2 * z[k], 1, NULL);
+    const double exact = (double)(2 * z[k] * sum);
+    ck_assert_double_eq_tol(b.now.ei[3], exact, 1e-14 * exact);
+    point_body_free(&b);
+  }
+  /* Two units, far below both times: e^i = (E/8000 + E/3000) e t/2. */
+  start("BURGERS", "8000., 500., 3000.", &from_rest);
+  point_body_run(&b, scheme_find("EXPONENTIAL"), 0.5, 1e-8, 1, NULL);
+  const double early = (1 / 8. + 1 / 3.) * 1e-8 * 1e-8 / 2;
+  ck_assert_double_eq_tol(b.now.ei[3], early, 1e-7 * early);
+  point_body_free(&b);
+}
+
 /* The equations of any elasticity give what those of an isotropic one do, of
  * the whole stress and of its deviator. */
 TEST(steps_of_any_elasticity_are_those_of_an_isotropic_one) {

@@ -237,7 +237,7 @@ TEST(tangent_counts_given_limits_if_told) {
   CONTACT_CASE c = case_new(2, 2, 0.3);
   theorems_contact with = {0}, without = {0};
   energy_norm e;
-  const double diagonal[] = {2, 0.5, 2, 4};
+  const double diagonal[] = {8, 0.5, 2, 4};
   for (int k = 0; k < 4; ++k) c.A[5 * k] = diagonal[k];
   c.B->val[0] = 0.0;
   c.g0[0] = 1.0;
@@ -246,6 +246,12 @@ TEST(tangent_counts_given_limits_if_told) {
   ck_assert_int_eq(friction_constants(&c.cp, &e, 0, &without), OK);
   ck_assert_double_eq_tol(with.tangent, 2.0, 1e-12);
   ck_assert_double_eq_tol(without.tangent, 0.25, 1e-12);
+  /* The pressure of the first moves no limit. */
+  ck_assert_double_eq_tol(without.normal, 2.0, 1e-12);
+  unsigned char held[4] = {0, 1, 0, 0};
+  c.cp.held = held;
+  ck_assert_int_eq(friction_constants(&c.cp, &e, 1, &with), OK);
+  ck_assert_double_eq_tol(with.tangent, 0.25, 1e-12);
   energy_norm_free(&e);
 }
 
@@ -296,6 +302,128 @@ TEST(bounds_hold_under_the_guaranteed_limit) {
   ck_assert_int_gt(checked, 60); /* they are not idle */
 }
 
+/* Two nodes with A = diag(4, 4, 9, 9), q = 1/2, lmax(inv(A)_tt) = 4, limits of
+ * their own; the second begins in its obstacle. From the state before, the gap
+ * of the first opens by 1/4, the second is to stick at 1/4 from its place. */
+TEST(bounds_are_those_of_their_formulas) {
+  CONTACT_CASE c = case_new(2, 2, 0.3);
+  const theorems_contact all = {.factor = 0.5, .tangent = 4.0};
+  double u[] = {0.5, 1, -0.5, 2}, far[4], before_u[] = {0.25, 0.5, -0.5, 1},
+         r[] = {-2, 0, -4, 0}, before_f[] = {1, 4, 3, 6},
+         before_gap[] = {0.75, HUGE_VAL, -0.5, HUGE_VAL}, g[] = {2, 5};
+  const state_before before = {1, before_u, r, before_f, before_gap, g};
+  theorems_bound b = {0};
+  energy_norm e;
+  for (int k = 0; k < 4; ++k) c.A[5 * k] = k < 2 ? 4 : 9;
+  COPY(c.f, ((double[]){2, 4, 3, 6}), 4);
+  COPY(c.gap, ((double[]){1, -0.5}), 2);
+  COPY(c.g0, ((double[]){3, 4}), 2);
+  COPY(c.ut0, ((double[]){0.5, 1.25}), 2);
+  ck_assert_int_eq(energy_norm_new(4, c.A, &e), OK);
+  ck_assert_int_eq(bound_total(&c.cp, u, &all, &e, &b), OK);
+  ck_assert_double_eq_tol(b.left, sqrt(41.0), 1e-12);
+  ck_assert_double_eq_tol(b.right, 2 * (sqrt(15.25) + 5 * 2), 1e-12);
+  ck_assert_int_eq(bound_change(&c.cp, u, &before, &all, &e, &b), OK);
+  ck_assert_double_eq_tol(b.left, sqrt(6.0625), 1e-12);
+  ck_assert_double_eq_tol(b.right, 2 * (0.75 + sqrt(1.6 * 1.6 + 0.04) * 2),
+                          1e-12);
+  /* Friction that ends: its node is in no constant. */
+  c.g0[1] = c.B->val[1] = 0;
+  ck_assert_int_eq(bound_change(&c.cp, u, &before, &all, &e, &b), OK);
+  ck_assert_ptr_nonnull(b.why);
+  /* Rounding of large loads is no violation. */
+  c.g0[0] = c.B->val[0] = 0;
+  for (int k = 0; k < 4; ++k) {
+    far[k] = 1e12 * (1 + 1e-10);
+    c.f[k] = 1e12 * c.A[5 * k];
+  }
+  const theorems_contact none = {.factor = 0};
+  c.gap[1] = 1;
+  ck_assert_int_eq(bound_total(&c.cp, far, &none, &e, &b), OK);
+  ck_assert_int_eq(b.violated, 0);
+  energy_norm_free(&e);
+}
+
+/* Two contacts of a node each, whose normal force falls by mu A_nt/A_tt times
+ * its limit; each row is of its own, and new with matrix or friction. */
+TEST(rows_of_contacts_are_their_own) {
+  CONTACT_CASE c = case_new(2, 2, 0.5);
+  looker l;
+  const double A[2][3] = {{4, 1, 5}, {4, 2, 5}}, mu[2] = {0.5, 0.5};
+  for (int i = 0; i < 2; ++i) {
+    double *at = c.A + 10 * i;
+    at[0] = A[i][0];
+    at[1] = at[4] = A[i][1];
+    at[5] = A[i][2];
+    c.u[2 * i + 1] = 1;
+    c.r[2 * i] = -1;
+    c.r[2 * i + 1] = -0.5;
+    c.f[2 * i] = A[i][1] + 1;
+    c.f[2 * i + 1] = A[i][2] + 0.5;
+  }
+  look_at(&l, &c, 0.5);
+  l.id[1] = 1;
+  l.scene.n_contact = 2;
+  l.scene.mu = mu;
+  l.scene.alone = 1;
+  const theorems_report *t = look(&l);
+  ck_assert_int_eq(t->n_contact, 3);
+  ck_assert_double_eq_tol(t->contacts[0].rate, 0.1, 1e-6);
+  ck_assert_double_eq_tol(t->contacts[1].rate, 0.2, 1e-6);
+  ck_assert_double_eq_tol(t->contacts[2].rate, 0.2, 1e-6);
+  ck_assert_double_eq_tol(t->contacts[0].tangent, 4.0 / 19, 1e-12);
+  ck_assert_double_eq_tol(t->contacts[1].tangent, 0.25, 1e-12);
+  ck_assert_str_eq(t->change.why, "no increment");
+  const double factor = t->contacts[0].factor;
+  c.B->val[0] = 0.25;
+  ck_assert_double_eq_tol(look(&l)->contacts[0].factor, factor / 2, 1e-12);
+  for (int k = 0; k < 16; ++k) c.A[k] *= 2;
+  ck_assert_double_eq_tol(look(&l)->contacts[0].normal, 8, 1e-12);
+  c.B->val[0] = c.B->val[1] = 0;
+  ck_assert_int_eq(look(&l)->n_contact, 0);
+  look_away(&l);
+}
+
+/* A map with the eigenvalues 0.9 and 0.5, far from the larger at first. */
+static status two_rates(void *ctx, double *size) {
+  double *v = ctx;
+  const double length = hypot(v[0], v[1]);
+  v[0] *= 0.9 / length;
+  v[1] *= 0.5 / length;
+  *size = hypot(v[0], v[1]);
+  return OK;
+}
+
+TEST(rate_of_a_map_is_the_largest) {
+  double v[2] = {1, 100}, rate;
+  const stress_map map = {v, two_rates};
+  ck_assert_int_eq(theorems_path_rate(&map, &rate), OK);
+  ck_assert_double_eq_tol(rate, 0.9, 1e-6);
+}
+
+/* x^k/k!: 10^24/24! = 1.61, 10^25/25! = 0.64. */
+TEST(passes_are_the_least) {
+  static const double x[] = {0, 0.5, 1, 2, 10}, passes[] = {1, 1, 2, 4, 25};
+  for (int k = 0; k < 5; ++k)
+    ck_assert_double_eq(theorems_passes(x[k]), passes[k]);
+}
+
+/* q = 5, then 1, of increments of 1 with theta = 1/2: L = 10 counts until the
+ * next step, 20^52/52! = 0.56. */
+TEST(fastest_rate_of_a_step_counts) {
+  static const double bound[] = {5, 1, 1}, span[] = {1, 2, 1},
+                      passes[] = {25, 52, 4};
+  theorems *t = NULL;
+  ck_assert_int_eq(theorems_new(&t), OK);
+  for (int k = 0; k < 3; ++k) {
+    theorems_path p = {.bound = bound[k]};
+    theorems_path_learn(t, 0.5, 1, span[k], &p);
+    ck_assert_double_eq(p.passes, passes[k]);
+    ck_assert_double_eq_tol(p.longest, 1 / bound[k], 1e-15);
+  }
+  memory_free(t);
+}
+
 /* An answer that is too large, or moves too far, violates them. */
 TEST(wrong_answers_violate_the_bounds) {
   CONTACT_CASE c = case_any(2, 5, 0.05, 0, 61);
@@ -313,8 +441,13 @@ TEST(wrong_answers_violate_the_bounds) {
   for (int i = 0; i < 5; ++i) c.ut0[i] = c.u[2 * i + 1];
   ck_assert_int_eq(look(&l)->change.violated, 0); /* nothing has changed */
   ck_assert_double_eq(l.rep.change.left, 0.0);
+  l.scene.tol = 1;
   for (int i = 0; i < 10; ++i) c.u[i] *= 1.0 + 1e-4;
   ck_assert_int_eq(look(&l)->change.violated, 1);
+  ck_assert_int_eq(l.rep.inequality_violated, 0);
+  ck_assert_int_eq(l.rep.violated, 1);
+  l.scene.tol = 1e-10;
+  ck_assert_int_eq(look(&l)->inequality_violated, 1);
   for (int i = 0; i < 10; ++i) c.u[i] *= far;
   ck_assert_int_eq(look(&l)->total.violated, 1);
   ck_assert_int_eq(l.rep.violated, 1);
@@ -345,6 +478,28 @@ TEST(inequality_tells_wrong_states) {
         ck_assert_msg(least < -1e-10, "case %d unknown %d %+d: %g", k, i, way,
                       least);
       }
+  }
+}
+
+/* The force of a support that holds a node along the plane does no work. A node
+ * deep in its obstacle misses by all of the energy of its displacement, less
+ * what it begins with. */
+TEST(inequality_of_a_held_node_and_of_a_deep_one) {
+  CONTACT_CASE c = case_new(2, 1, 0.0);
+  unsigned char held[2] = {0, 1};
+  double least;
+  int fields;
+  c.A[0] = c.A[3] = 4;
+  c.f[1] = 3;
+  c.cp.held = held;
+  ck_assert_int_eq(inequality_least(&c.cp, c.u, &least, &fields), OK);
+  ck_assert_double_ge(least, 0.0);
+  c.f[1] = 0;
+  for (int k = 0; k < 2; ++k) {
+    c.gap[0] = k ? -3 : 0;
+    c.u[0] = k ? -2 : 1;
+    ck_assert_int_eq(inequality_least(&c.cp, c.u, &least, &fields), OK);
+    ck_assert_double_eq_tol(least, -1, 1e-12);
   }
 }
 
@@ -396,6 +551,7 @@ TEST(frozen_problems_have_the_same_solution) {
                                 contact_node_limit(&c.cp, c.r, i), 1e-13);
       ck_assert_double_le(contact_residual(&p.cp, c.u, p.r), 1e-11);
       ck_assert_double_eq(p.B.val[p.B.start[1]], 0.0);
+      ck_assert_double_eq(p.gap[1], with ? HUGE_VAL : c.gap[1]);
       ck_assert_int_eq(inequality_least(&p.cp, c.u, &least, &fields), OK);
       ck_assert_double_ge(least, -1e-11);
     }

@@ -88,7 +88,6 @@ status theorems_path_rate(const stress_map *map, double *rate) {
 
 double theorems_passes(double x) {
   double low = floor(x), high = 4.0 + ceil(3.0 * x);
-  if (x < 1.0) return 1.0;
   if (!(high < 1e15)) return HUGE_VAL;
   while (high - low > 1.0) { /* the terms grow until k = x, then fall */
     double middle = floor(0.5 * (low + high));

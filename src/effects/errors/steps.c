@@ -490,7 +490,7 @@ static status attempt_balanced(run *r, paths *own) {
   int settled = r->solving.report.outcome > 0, shorter = p->dt > s->dt_min;
   if (r->solving.report.outcome == STOPPED_UNSTABLE ||
       (!settled && shorter && loop_cut_helps(r))) {
-    PASS(refuse(r, tried, 0.0, outcome_text(r->solving.report.outcome)));
+    PASS(refuse(r, tried, tried, outcome_text(r->solving.report.outcome)));
     return OK;
   }
   if (outcome_is_fatal(r->solving.report.outcome)) PASS(loop_no_equilibrium(r));

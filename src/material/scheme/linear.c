@@ -89,8 +89,9 @@ static status theta_map(const flow_kind *k, const scheme_step *p,
   return OK;
 }
 
-/* X = exp(A) - I for A[n*n] of any size: Taylor below 2^-6, then squaring in
- * the form X <- 2 X + X X, which preserves slow rates next to fast ones. */
+/* X = exp(A) - I for A[n*n] with an entry of 1 or more: Taylor below 2^-6, then
+ * squaring in the form X <- 2 X + X X, which preserves slow rates next to fast
+ * ones. */
 static status exponential_less_one(int n, const double *A, double *X) {
   enum { TERMS = 12 };
   OWNED double *power = NULL, *next = NULL;
@@ -103,8 +104,7 @@ static status exponential_less_one(int n, const double *A, double *X) {
     for (int j = 0; j < n; ++j) row += fabs(A[i + n * j]);
     largest = fmax(largest, row);
   }
-  if (largest > 0.0) frexp(largest * 64.0, &halvings);
-  if (halvings < 0) halvings = 0;
+  frexp(largest * 64.0, &halvings);
   for (size_t i = 0; i < square; ++i) X[i] = power[i] = ldexp(A[i], -halvings);
   for (int k = 2; k <= TERMS; ++k) {
     CLEAR(next, square);
@@ -190,8 +190,7 @@ status general_map(const flow_kind *k, const scheme_step *p, int exact,
  * takes e_zz too as linear over the step.
  */
 
-/* q1 of EXPONENTIAL: z/2 - z^2/6 + ... where 1 - a/z would cancel. */
-/* 1 - (1 - exp(-z))/z */
+/* q1 of EXPONENTIAL, 1 - (1 - exp(-z))/z: by its series where that cancels. */
 static double relaxing_late_share(double z) {
   double sum = 0.0, term = z / 2;
   if (z > 0.1) return 1.0 + expm1(-z) / z;
