@@ -157,6 +157,7 @@ static status make_matrices(run *r, int chosen) {
   else
     run_free_surface(r);
   r->body.d.surface = r->surface;
+  PASS(setup_check_circles(r));
   PASS(run_check_supports(r, &motions));
   PASS(choose_nodes(r, motions));
   r->problem.n_before = r->nodes.n_row;
@@ -258,6 +259,7 @@ status run_motions(run *r, int *n, free_motion **list) {
   PASS(run_build_ties(r));
   if (r->m->effects & EFFECT_CONTACT) PASS(run_build_surface(r));
   r->body.d.surface = r->surface;
+  PASS(setup_check_circles(r));
   PASS(find_motions(r, n, list));
   PASS(refuse_unheld(r, *n, *list));
   return effects_prepare(r);
