@@ -148,7 +148,7 @@ enum { MOST_SHOWN = 20 }; /* contacts */
 
 /* The unit with a blank before it; nothing if *UNITS gives it no label. */
 static const char *unit_after(const char *unit, const model *m) {
-  const char *label = column_unit(unit, m);
+  const char *label = model_unit(m, unit);
   return strcmp(label, unit) == 0 ? "" : text_of(" %s", label);
 }
 
@@ -188,7 +188,7 @@ static void close_goals(const job *j, FILE *f) {
   for (int i = 0; i < j->m->n.goal && job_goal(j, i) != NULL; ++i) {
     const goal_result *g = job_goal(j, i);
     fprintf(f, "%-9s %.7g %s", j->m->accuracy.goals[i].name, g->value,
-            job_goal_unit(j->m, i));
+            model_goal_unit(j->m, i));
     if (!isnan(g->error))
       fprintf(f, ", error %.2g: %.7g within %.1g", g->error,
               g->value + g->error, g->band);

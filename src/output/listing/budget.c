@@ -263,10 +263,6 @@ static void print_advice(const job *j, FILE *f) {
   fprintf(f, "%s\n", at);
 }
 
-const char *job_goal_unit(const model *m, int id) {
-  return column_unit(goal_unit(&m->accuracy.goals[id]), m);
-}
-
 const goal_result *job_goal(const job *j, int id) {
   const run_summary *run = j->run;
   if (run->n_increment == 0 || run->goals == NULL) return NULL;
@@ -285,7 +281,7 @@ static void print_goal(const job *j, int id, const goal_result *g, int cost,
   else
     fprintf(f, " %12s %14s %10s %10s %6s", "-", "-", "-", "-", "-");
   if (cost) fprintf(f, " %9.3f", g->cpu);
-  fprintf(f, "  %s; %s\n", job_goal_unit(j->m, id),
+  fprintf(f, "  %s; %s\n", model_goal_unit(j->m, id),
           goal_verdict_text(g->verdict));
 }
 
@@ -325,7 +321,7 @@ static int is_absolute(const goal_card *g) {
 static int goal_head(const model *m, int id, char *text, size_t size) {
   const goal_card *g = &m->accuracy.goals[id];
   const int width = snprintf(text, size, "%s[%s]", g->name,
-                             is_absolute(g) ? job_goal_unit(m, id) : "%");
+                             is_absolute(g) ? model_goal_unit(m, id) : "%");
   return width > 10 ? width : 10;
 }
 
@@ -385,7 +381,7 @@ static void print_targets(const job *j, FILE *f) {
     const goal_card *g = &j->m->accuracy.goals[i];
     if (!(g->target > 0.0)) continue;
     fprintf(f, "%s%g %s %s", comma, g->target,
-            g->in_percent ? "% of" : job_goal_unit(j->m, i), g->name);
+            g->in_percent ? "% of" : model_goal_unit(j->m, i), g->name);
     comma = ", ";
   }
   fprintf(f, ": %s\n", t->why[0] == '\0' ? "reached" : "missed");
