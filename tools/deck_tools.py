@@ -224,6 +224,17 @@ def drop_parameter(lines, card, name):
             for line in lines]
 
 
+def drop_values(lines, names):
+    """*PARAMETER without these names."""
+    out, card = [], None
+    for line in lines:
+        card = card_name(line) or card
+        name = line.split("=")[0].strip().upper()
+        if card != "PARAMETER" or name not in names:
+            out.append(line)
+    return out
+
+
 def insert_in_steps(lines, text):
     """A card at the end of every step."""
     out = []
