@@ -224,13 +224,18 @@ def drop_parameter(lines, card, name):
             for line in lines]
 
 
-def drop_values(lines, names):
-    """*PARAMETER without these names."""
+def drop_unused(lines, before, errors):
+    """*PARAMETER without the names that the program calls unused, and that the
+    deck before used more often."""
+    def uses(name, deck):
+        return len(re.findall(rf"\b{name}\b", "\n".join(deck), re.IGNORECASE))
+    names = [n for n in re.findall(
+        r"P2042: \*PARAMETER (\w+) is used neither", errors)
+        if uses(n, before) > uses(n, lines)]
     out, card = [], None
     for line in lines:
         card = card_name(line) or card
-        name = line.split("=")[0].strip().upper()
-        if card != "PARAMETER" or name not in names:
+        if card != "PARAMETER" or line.split("=")[0].strip() not in names:
             out.append(line)
     return out
 

@@ -352,6 +352,19 @@ class Results(unittest.TestCase):
             self.assertNotEqual(rows[2][-1], "0")
             self.assertIn("study: no answer for MU=-1", text)
 
+    def test_study_drops_what_it_replaces(self):
+        """Of *PARAMETER, and nothing else that is not used."""
+        deck = self.dir / "block.inp"
+        for more, wanted in (("", 0), ("K = 3", 2)):
+            deck.write_text("\n".join(
+                line.replace("<DT>", "<H>").replace("DT = 0.2", f"H = 0.2\n{more}")
+                for line in deck_tools.read_deck(DECK)))
+            code, said = tool("study", deck, "--vary", "DT=1", "--vary", "N=4",
+                              "--response", "TOTALS.normal", "-o",
+                              self.dir / "study")
+            self.assertEqual(code, wanted, said)
+            self.assertEqual("PARAMETER K is used neither" in said, bool(more))
+
     def test_study_tells_a_response(self):
         code, said = tool("study", DECK, "--response", "TOTALS.force_x",
                           "--vary", "MU=0.2,0.8", "--vary", "N=4", "-o",
