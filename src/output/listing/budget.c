@@ -333,25 +333,28 @@ void passes_goal_heads(const model *m, FILE *f) {
   }
 }
 
+static const char *known(double error) {
+  return isnan(error) ? "-" : text_number(error, 2);
+}
+
 void passes_goals(const model *m, const pass_goal *goals, int pass, FILE *f) {
   for (int i = 0; i < m->n.goal; ++i) {
     const pass_goal *g = &goals[pass * m->n.goal + i];
     char head[80];
     const int absolute = is_absolute(&m->accuracy.goals[i]);
     const int width = goal_head(m, i, head, sizeof head);
-    fprintf(f, " %*s", width,
-            text_number(absolute ? g->off : pass_goal_percent(g), 2));
+    fprintf(f, " %*s", width, known(absolute ? g->off : pass_goal_percent(g)));
   }
 }
 
 /* Errors in the energy norm, where they have a target. */
 static void print_norm(const pass_row *r, int is_pass, FILE *f) {
   if (is_pass)
-    fprintf(f, " %10s %10s %10s", text_number(r->mesh, 2),
-            text_number(r->time, 2), text_number(r->solver, 2));
+    fprintf(f, " %10s %10s %10s", known(r->mesh), known(r->time),
+            known(r->solver));
   else
     fprintf(f, " %10s %10s %10s", "", "", "");
-  fprintf(f, " %10s", text_number(r->total, 2));
+  fprintf(f, " %10s", known(r->total));
 }
 
 /* no 0: the forecast. */
