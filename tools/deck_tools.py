@@ -224,6 +224,22 @@ def drop_parameter(lines, card, name):
             for line in lines]
 
 
+def drop_unused(lines, before, errors):
+    """*PARAMETER without the names that the program calls unused, and that the
+    deck before used more often."""
+    def uses(name, deck):
+        return len(re.findall(rf"\b{name}\b", "\n".join(deck), re.IGNORECASE))
+    names = [n for n in re.findall(
+        r"P2042: \*PARAMETER (\w+) is used neither", errors)
+        if uses(n, before) > uses(n, lines)]
+    out, card = [], None
+    for line in lines:
+        card = card_name(line) or card
+        if card != "PARAMETER" or line.split("=")[0].strip() not in names:
+            out.append(line)
+    return out
+
+
 def insert_in_steps(lines, text):
     """A card at the end of every step."""
     out = []

@@ -9,6 +9,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -43,6 +44,9 @@ int file_same(const char *a, const char *b) {
 
 status file_may_go(const char *path) {
   struct stat about;
+  const char *slash = strrchr(path, '/');
+  if (strlen(slash == NULL ? path : slash + 1) > NAME_MAX)
+    RAISE(ERR_FILE, "%s: its name is too long; name the deck otherwise", path);
   if (lstat(path, &about) != 0) {
     if (errno == ENOENT || errno == ENOTDIR) return OK;
     RAISE(ERR_FILE, "%s: cannot be replaced: %s", path, strerror(errno));

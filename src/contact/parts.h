@@ -123,10 +123,6 @@ typedef struct pair_links {
  * ERR_MEMORY. */
 status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
                     int m, const pair_row *rows, pair_links *links);
-/* ERR_DECK with an error in the log if slave nodes of pairs move with
- * each other in a circle; ERR_MEMORY. */
-status pairs_check_circles(const contact_surface *s, const surface_input *in,
-                           message_log *log);
 /* Gap of a row of the coupling along n[dim], at time 0, m. */
 double pair_apart(const surface_input *in, const contact_pair *p, int row,
                   const double *n);

@@ -764,7 +764,6 @@ status surface_build(const surface_input *in, message_log *log,
     if (n_kept > 0) TRY(set_node(&b, s, n_kept, kept));
   }
   for (int p = 0; p < in->n_pair; ++p) say(&b, p);
-  TRY(pairs_check_circles(s, in, log));
   TRY(message_status(log, ERR_DECK));
   *out = s;
   s = NULL;

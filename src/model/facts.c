@@ -1,6 +1,7 @@
 /*
  * Facts of the deck: the first card or step of a kind, if any.
  */
+#include "base/base.h"
 #include "model/facts.h"
 
 const char *place_file(const place *at) {
@@ -200,14 +201,34 @@ int facts_leaves_axis(const model *m, int obstacle_id, double t) {
          quantity_value(&o->motion[0], o->point, t) != 0.0;
 }
 
-const char *goal_unit(const goal_card *g) {
+const char *model_unit(const model *m, const char *unit) {
+  const char *const words[] = {"length", "force", "time"};
+  const char *const labels[] = {m->unit.length, m->unit.force, m->unit.time};
+  enum { LABEL = 80 };
+  char *text = text_buffer();
+  size_t used = 0;
+  text[0] = '\0';
+  while (*unit != '\0' && used + 1 < LABEL) {
+    int k = 0;
+    while (k < 3 && strncmp(unit, words[k], strlen(words[k])) != 0) ++k;
+    int known = k < 3 && labels[k] != NULL;
+    int n = known ? snprintf(text + used, LABEL - used, "%s", labels[k])
+                  : snprintf(text + used, LABEL - used, "%c", *unit);
+    unit += known ? strlen(words[k]) : 1;
+    used += n;
+  }
+  for (char *p = text; (p = strpbrk(p, " \t\v\f[]")) != NULL;) *p = '_';
+  return text;
+}
+
+const char *model_goal_unit(const model *m, int id) {
   static const char *const units[] = {
       [GOAL_FORCE] = "force",           [GOAL_PRESSURE] = "force/length^2",
       [GOAL_WIDTH] = "length",          [GOAL_DISPLACEMENT] = "length",
       [GOAL_STRESS] = "force/length^2", [GOAL_ENERGY] = "force*length",
       [GOAL_FRICTION] = "force*length", [GOAL_MOMENT] = "force*length",
       [GOAL_SIF] = "force/length^1.5"};
-  return units[g->quantity];
+  return model_unit(m, units[m->accuracy.goals[id].quantity]);
 }
 
 const goal_card *model_targeted_goal(const model *m) {

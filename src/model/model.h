@@ -540,8 +540,11 @@ double model_thickness(const model *m, int elem_id); /* m */
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
 int model_is_axisymmetric(const model *m);
-/* "force", "length", ... */
-const char *goal_unit(const goal_card *g);
+/* Unit with the labels of *UNITS: "force/length^2" -> "N/mm^2", one word
+ * without brackets; in a text_buffer. */
+const char *model_unit(const model *m, const char *unit);
+/* That of a goal. */
+const char *model_goal_unit(const model *m, int id);
 /* The first *GOAL with TARGET=, or NULL; 1: some error is to be reached. */
 const goal_card *model_targeted_goal(const model *m);
 int model_has_target(const model *m);

@@ -247,7 +247,7 @@ static void write_goals(json *w, const job *j) {
     const goal_result *g = job_goal(j, i);
     ITEM(w);
     json_string(w, "goal", j->m->accuracy.goals[i].name);
-    json_string(w, "unit", job_goal_unit(j->m, i));
+    json_string(w, "unit", model_goal_unit(j->m, i));
     json_real(w, "value", g->value);
     json_real(w, "error", g->error);
     json_real(w, "corrected", g->value + g->error);
@@ -264,7 +264,7 @@ static void write_pass_goals(json *w, const job *j, const pass_goal *g) {
   for (int i = 0; i < j->m->n.goal; ++i) {
     ITEM(w);
     json_string(w, "goal", j->m->accuracy.goals[i].name);
-    json_string(w, "unit", job_goal_unit(j->m, i));
+    json_string(w, "unit", model_goal_unit(j->m, i));
     json_real(w, "value", g[i].found.value);
     json_real(w, "error", g[i].found.error);
     json_real(w, "band", g[i].found.band);

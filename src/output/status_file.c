@@ -148,7 +148,7 @@ enum { MOST_SHOWN = 20 }; /* contacts */
 
 /* The unit with a blank before it; nothing if *UNITS gives it no label. */
 static const char *unit_after(const char *unit, const model *m) {
-  const char *label = column_unit(unit, m);
+  const char *label = model_unit(m, unit);
   return strcmp(label, unit) == 0 ? "" : text_of(" %s", label);
 }
 
@@ -187,12 +187,13 @@ static void close_contacts(const job *j, FILE *f) {
 static void close_goals(const job *j, FILE *f) {
   for (int i = 0; i < j->m->n.goal && job_goal(j, i) != NULL; ++i) {
     const goal_result *g = job_goal(j, i);
-    fprintf(f, "%-9s %.7g %s", j->m->accuracy.goals[i].name, g->value,
-            job_goal_unit(j->m, i));
+    fprintf(f, "%-9s ", j->m->accuracy.goals[i].name);
+    if (!isnan(g->value))
+      fprintf(f, "%.7g %s, ", g->value, model_goal_unit(j->m, i));
     if (!isnan(g->error))
-      fprintf(f, ", error %.2g: %.7g within %.1g", g->error,
+      fprintf(f, "error %.2g: %.7g within %.1g, ", g->error,
               g->value + g->error, g->band);
-    fprintf(f, ", %s\n", goal_verdict_text(g->verdict));
+    fprintf(f, "%s\n", goal_verdict_text(g->verdict));
   }
 }
 

@@ -263,4 +263,16 @@ TEST(no_plain_file_is_no_result) {
     }
 }
 
+/* Before anything is made, not at its end. */
+TEST(results_whose_names_are_too_long_are_refused_at_once) {
+  JOB j = begin();
+  write_deck(&j, 2, "one.msh");
+  int code = job_shell(&j,
+                       "n=$(printf '%0240d' 7) && cp job.inp $n.inp && "
+                       "protis $n -o new");
+  ck_assert_msg(code == 4 && strstr(j.errors, "name is too long") != NULL,
+                "exit %d: %s", code, j.errors);
+  shell(&j, "test ! -e new");
+}
+
 UNIT_MAIN("inputs")

@@ -233,7 +233,7 @@ TEST(run_on_a_terminal_ends_with_what_matters) {
 }
 
 /* A strip on 21 contacts, each of a unit of length under a pressure of 1: each
- * has the node at its end, the first both. */
+ * has the node at its end, the first both. A goal without a value is none. */
 TEST(end_shows_twenty_contacts) {
   char cards[2000] = "";
   for (int i = 0; i < 21; ++i)
@@ -254,6 +254,8 @@ TEST(end_shows_twenty_contacts) {
             "*MESH, FILE=strip.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+            "*GOAL, NAME=W, QUANTITY=WIDTH, CONTACT=C0\n"
+            "*GOAL, NAME=G, QUANTITY=FORCE, CONTACT=C0\n"
             "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 1.\n"
             "*END STEP\n",
             cards);
@@ -263,7 +265,10 @@ TEST(end_shows_twenty_contacts) {
               NULL &&
           strstr(said,
                  "\nC19       force_x 0, force_y 1, open 0, slip 1, "
-                 "stick 0\r\n          1 contacts more: JOB.json\r\n") != NULL,
+                 "stick 0\r\n          1 contacts more: JOB.json\r\n") !=
+              NULL &&
+          strstr(said, "\nW         none: ") != NULL &&
+          strstr(said, "\nG         1.5 force, no estimate: ") != NULL,
       "%s", said);
 }
 

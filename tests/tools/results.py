@@ -352,6 +352,19 @@ class Results(unittest.TestCase):
             self.assertNotEqual(rows[2][-1], "0")
             self.assertIn("study: no answer for MU=-1", text)
 
+    def test_study_drops_what_it_replaces(self):
+        """Of *PARAMETER, and nothing else that is not used."""
+        deck = self.dir / "block.inp"
+        for more, wanted in (("", 0), ("K = 3", 2)):
+            deck.write_text("\n".join(
+                line.replace("<DT>", "<H>").replace("DT = 0.2", f"H = 0.2\n{more}")
+                for line in deck_tools.read_deck(DECK)))
+            code, said = tool("study", deck, "--vary", "DT=1", "--vary", "N=4",
+                              "--response", "TOTALS.normal", "-o",
+                              self.dir / "study")
+            self.assertEqual(code, wanted, said)
+            self.assertEqual("PARAMETER K is used neither" in said, bool(more))
+
     def test_study_tells_a_response(self):
         code, said = tool("study", DECK, "--response", "TOTALS.force_x",
                           "--vary", "MU=0.2,0.8", "--vary", "N=4", "-o",
@@ -369,6 +382,28 @@ class Results(unittest.TestCase):
                                  "--vary", "N=4", "-o", self.dir / "s")[0], 0)
 
     # ---- Python and csv ------------------------------------------------------
+
+    def test_effects_are_switched_off_one_by_one(self):
+        """What only they have used of *PARAMETER too; also without contact."""
+        deck = self.dir / "block.inp"
+        mesh = pathlib.Path("tests/regression/bad/square.msh").resolve()
+        body = [f"*MESH, FILE={mesh}", "*MATERIAL, NAME=M", "*ELASTIC",
+                "1000., 0.", "*SOLID SECTION, ELSET=BODY, MATERIAL=M"]
+        step = ["*STEP", "*STATIC", "*BOUNDARY", "BOTTOM, 1, 2",
+                "*DSLOAD", "TOP, P, 1.", "TOP, TX, 0.1", "*END STEP"]
+        contact = ["*PARAMETER", "MU = 0.2", "*OBSTACLE, NAME=O, TYPE=CONFORMING",
+                   "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O",
+                   "*FRICTION, CONTACT=C, LAW=COULOMB", "<MU>"]
+        held = ["LEFT, 1" if line.startswith("BOTTOM") else line
+                for line in step]
+        for lines, rows, last in ((body + contact + held, 4, "-100"),
+                                  (body + step, 2, "0")):
+            deck.write_text("\n".join(lines))
+            code, said = tool("effects", deck, "--repeat", 1, "-o",
+                              self.dir / "p")
+            table = [row.split() for row in said.splitlines()[2:-1]]
+            self.assertEqual((code, len(table)), (0, rows), said)
+            self.assertEqual(table[0][-1], last, said)
 
     def test_tables_have_names_numbers_and_units(self):
         job = protis.run(DECK, MU=0.5, N=4)

@@ -400,14 +400,14 @@ TEST(components_are_those_of_their_letters) {
 
 TEST(units_are_composed_from_the_labels) {
   model m = {.unit.length = "mm", .unit.force = "N"};
-  ck_assert_str_eq(column_unit("force/length^2", &m), "N/mm^2");
-  ck_assert_str_eq(column_unit("force*length", &m), "N*mm");
-  ck_assert_str_eq(column_unit("time", &m), "time");
-  ck_assert_str_eq(column_unit("-", &m), "-");
+  ck_assert_str_eq(model_unit(&m, "force/length^2"), "N/mm^2");
+  ck_assert_str_eq(model_unit(&m, "force*length"), "N*mm");
+  ck_assert_str_eq(model_unit(&m, "time"), "time");
+  ck_assert_str_eq(model_unit(&m, "-"), "-");
   char label[2 * TEXT_BUFFER] = "";
   memset(label, 'm', sizeof label - 1);
   m.unit.length = label;
-  ck_assert_uint_eq(strlen(column_unit("length", &m)), 79);
+  ck_assert_uint_eq(strlen(model_unit(&m, "length")), 79);
 }
 
 UNIT_MAIN("columns")

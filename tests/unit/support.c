@@ -470,7 +470,7 @@ TESTS(bodies_joined_at_the_first_node_alone_are_one_set, 2) {
   int at[] = {0}, above[] = {17};
   double part[] = {1, 1};
   node_links to = {2, 1, (size_t[]){0, 1}, above, part};
-  const tie_set ties = {1, at, to};
+  const tie_set ties = {1, at, to, NULL};
   OWNED free_motion *list = NULL;
   int n, n_free;
   if (_i == 0) s->d.ties = &ties;

@@ -141,7 +141,7 @@ TEST(area_of_a_tied_corner_is_shared_by_the_others) {
   faces_face(&c, 0, 1, 2);
   faces_face(&c, 0, 2, 3);
   faces_contact(&c, "LID", 0, 2);
-  c.in.ties = &(tie_set){1, &tied, {.dim = 3, .n = 1, .start = start}};
+  c.in.ties = &(tie_set){1, &tied, {.dim = 3, .n = 1, .start = start}, NULL};
   ck_assert_int_eq(faces_build(&c), OK);
   ck_assert_int_eq(c.s->n, 3);
   for (int i = 0; i < 3; ++i)

@@ -59,6 +59,7 @@ typedef struct tie_set {
   int n;
   int *node_id;  /* [n] ascending, none a contact node */
   node_links to; /* row q: node_id[q] */
+  int *tie_id;   /* [n] its *TIE */
 } tie_set;
 
 /* What acts on tied nodes goes to their masters, but for components of

@@ -660,7 +660,7 @@ static const char *goal_name(const view *v, int id) {
 }
 
 static const char *goal_unit_word(const view *v, int id) {
-  return goal_unit(&v->m->accuracy.goals[id]);
+  return model_goal_unit(v->m, id);
 }
 
 static const char *goal_word(const view *v, int id) {

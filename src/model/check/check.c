@@ -592,18 +592,13 @@ static status check_surfaces(const model *m, const mesh *msh,
 
 static int is_lost(const model *m) { return message_count(m->log, ERROR) > 0; }
 
-static void check_same_surfaces(const model *m, int id) {
-  const contact *c = &m->contacts[id];
-  for (EACH(const contact, old, m->contacts, id)) {
-    const surface_pair *a = &c->pair, *b = &old->pair;
-    if (!old->is_pair ||
-        a->slave_id + a->master_id != b->slave_id + b->master_id)
-      continue;
-    if (a->slave_id == b->slave_id || a->slave_id == b->master_id)
-      message_add(m->log, P2011, &c->at,
-                  "contact pair %s has the surfaces of contact pair %s",
-                  c->name, old->name);
-  }
+static void refuse_same(const model *m, const pair_card *of,
+                        const surface_pair *a, const surface_pair *b,
+                        const char *name) {
+  if (a->slave_id + a->master_id == b->slave_id + b->master_id &&
+      (a->slave_id == b->slave_id || a->slave_id == b->master_id))
+    message_add(m->log, P2011, of->at, "*%s %s has the surfaces of *%s %s",
+                of->card, of->name, of->card, name);
 }
 
 static status check_contact_pair(model *m, const mesh *msh,
@@ -618,7 +613,8 @@ static status check_contact_pair(model *m, const mesh *msh,
   c->group_id = c->pair.slave_id;
   c->group = msh->group[c->group_id].name;
   c->obstacle_name = msh->group[c->pair.master_id].name;
-  check_same_surfaces(m, id);
+  for (EACH(const contact, old, m->contacts, id))
+    if (old->is_pair) refuse_same(m, &of, &c->pair, &old->pair, old->name);
   return OK;
 }
 
@@ -665,9 +661,10 @@ static status check_ties(model *m, const mesh *msh,
     const pair_card of = {"TIE", t->name, &t->at};
     int group[2] = {-1, -1};
     PASS(check_surfaces(m, msh, &of, &t->pair, group));
-    if (!is_lost(m))
-      choose(m, msh, fixed, group, meets_contact(msh, group, touches),
-             &t->pair);
+    if (is_lost(m)) continue;
+    choose(m, msh, fixed, group, meets_contact(msh, group, touches), &t->pair);
+    for (const tie *old = m->ties; old < t; ++old)
+      refuse_same(m, &of, &t->pair, &old->pair, old->name);
   }
   return OK;
 }

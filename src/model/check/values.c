@@ -173,7 +173,7 @@ static status find_field(model *m, const mesh *msh, const char *file,
   const status st = nodal_field_read(file, msh, m->mesh.scale, &f->value);
   if (st == ERR_FILE || st == ERR_DECK) {
     message_add(m->log, P2053, at, "%s", status_message());
-    return OK;
+    return st == ERR_FILE ? st : OK;
   }
   PASS(st);
   f->file = file;

@@ -545,31 +545,11 @@ int column_items(const column *c, const view *v) {
   return e->items(effect_state(v->s->effects, e));
 }
 
-const char *column_unit(const char *unit, const model *m) {
-  const char *const words[] = {"length", "force", "time"};
-  const char *const labels[] = {m->unit.length, m->unit.force, m->unit.time};
-  enum { LABEL = 80 };
-  char *text = text_buffer();
-  size_t used = 0;
-  text[0] = '\0';
-  while (*unit != '\0' && used + 1 < LABEL) {
-    int k = 0;
-    while (k < 3 && strncmp(unit, words[k], strlen(words[k])) != 0) ++k;
-    int known = k < 3 && labels[k] != NULL;
-    int n = known ? snprintf(text + used, LABEL - used, "%s", labels[k])
-                  : snprintf(text + used, LABEL - used, "%c", *unit);
-    unit += known ? strlen(words[k]) : 1;
-    used += n;
-  }
-  for (char *p = text; (p = strpbrk(p, " \t\v\f[]")) != NULL;) *p = '_';
-  return text;
-}
-
 enum { COLUMNS = sizeof((table *)0)->col / sizeof(column *) };
 
 static void cell_name(const column *c, const model *m, char *text,
                       size_t size) {
-  snprintf(text, size, "%s[%s]", c->name, column_unit(c->unit, m));
+  snprintf(text, size, "%s[%s]", c->name, model_unit(m, c->unit));
 }
 
 /* Sign, point, E and three digits of the exponent: digits + 8. */

@@ -30,9 +30,6 @@ int column_ready(const column *c, const state *s);
 int column_items(const column *c, const view *v);
 /* The defect over the largest of the energies so far; 0: nothing moved yet. */
 double energy_defect_relative(const energies *e);
-/* Unit with the labels of *UNITS: "force/length^2" -> "N/mm^2", one word
- * without brackets; in a text_buffer. */
-const char *column_unit(const char *unit, const model *m);
 
 /* Columns of a table that the model and the state have. */
 typedef struct table {

@@ -85,7 +85,7 @@ static status attribute_text(const maker *k, hid_t object, const char *name,
 
 static status column_attributes(const maker *k, hid_t object, const column *c,
                                 const model *m) {
-  PASS(attribute_text(k, object, "unit", column_unit(c->unit, m)));
+  PASS(attribute_text(k, object, "unit", model_unit(m, c->unit)));
   return attribute_text(k, object, "help", c->help);
 }
 

@@ -263,10 +263,6 @@ static void print_advice(const job *j, FILE *f) {
   fprintf(f, "%s\n", at);
 }
 
-const char *job_goal_unit(const model *m, int id) {
-  return column_unit(goal_unit(&m->accuracy.goals[id]), m);
-}
-
 const goal_result *job_goal(const job *j, int id) {
   const run_summary *run = j->run;
   if (run->n_increment == 0 || run->goals == NULL) return NULL;
@@ -285,7 +281,7 @@ static void print_goal(const job *j, int id, const goal_result *g, int cost,
   else
     fprintf(f, " %12s %14s %10s %10s %6s", "-", "-", "-", "-", "-");
   if (cost) fprintf(f, " %9.3f", g->cpu);
-  fprintf(f, "  %s; %s\n", job_goal_unit(j->m, id),
+  fprintf(f, "  %s; %s\n", model_goal_unit(j->m, id),
           goal_verdict_text(g->verdict));
 }
 
@@ -325,7 +321,7 @@ static int is_absolute(const goal_card *g) {
 static int goal_head(const model *m, int id, char *text, size_t size) {
   const goal_card *g = &m->accuracy.goals[id];
   const int width = snprintf(text, size, "%s[%s]", g->name,
-                             is_absolute(g) ? job_goal_unit(m, id) : "%");
+                             is_absolute(g) ? model_goal_unit(m, id) : "%");
   return width > 10 ? width : 10;
 }
 
@@ -337,25 +333,28 @@ void passes_goal_heads(const model *m, FILE *f) {
   }
 }
 
+static const char *known(double error) {
+  return isnan(error) ? "-" : text_number(error, 2);
+}
+
 void passes_goals(const model *m, const pass_goal *goals, int pass, FILE *f) {
   for (int i = 0; i < m->n.goal; ++i) {
     const pass_goal *g = &goals[pass * m->n.goal + i];
     char head[80];
     const int absolute = is_absolute(&m->accuracy.goals[i]);
     const int width = goal_head(m, i, head, sizeof head);
-    fprintf(f, " %*s", width,
-            text_number(absolute ? g->off : pass_goal_percent(g), 2));
+    fprintf(f, " %*s", width, known(absolute ? g->off : pass_goal_percent(g)));
   }
 }
 
 /* Errors in the energy norm, where they have a target. */
 static void print_norm(const pass_row *r, int is_pass, FILE *f) {
   if (is_pass)
-    fprintf(f, " %10s %10s %10s", text_number(r->mesh, 2),
-            text_number(r->time, 2), text_number(r->solver, 2));
+    fprintf(f, " %10s %10s %10s", known(r->mesh), known(r->time),
+            known(r->solver));
   else
     fprintf(f, " %10s %10s %10s", "", "", "");
-  fprintf(f, " %10s", text_number(r->total, 2));
+  fprintf(f, " %10s", known(r->total));
 }
 
 /* no 0: the forecast. */
@@ -385,7 +384,7 @@ static void print_targets(const job *j, FILE *f) {
     const goal_card *g = &j->m->accuracy.goals[i];
     if (!(g->target > 0.0)) continue;
     fprintf(f, "%s%g %s %s", comma, g->target,
-            g->in_percent ? "% of" : job_goal_unit(j->m, i), g->name);
+            g->in_percent ? "% of" : model_goal_unit(j->m, i), g->name);
     comma = ", ";
   }
   fprintf(f, ": %s\n", t->why[0] == '\0' ? "reached" : "missed");

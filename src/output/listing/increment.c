@@ -21,7 +21,7 @@ static int next_defect(const start_report *s, int n, int last) {
 status listing_start(const job *j, const start_report *s, text_file *lst) {
   FILE *f = lst->f;
   int node = -1;
-  const char *unit = column_unit("force", j->m);
+  const char *unit = model_unit(j->m, "force");
   fputs("\ninitial state: ", f);
   if (s->source != NULL)
     fprintf(f, "end of %s, time %s\n", s->source,
@@ -132,10 +132,10 @@ static void print_constants(const job *j, const theorems_report *t, FILE *f) {
     const theorems_contact *c = &t->contacts[i];
     fprintf(f, "  theory: %s: largest eigenvalues of A_nn %s %s, ",
             row_name(j->m, c), text_number(c->normal, 4),
-            column_unit("force/length", j->m));
+            model_unit(j->m, "force/length"));
     if (c->tangent < HUGE_VAL)
       fprintf(f, "of inv(A)_tt %s %s\n", text_number(c->tangent, 4),
-              column_unit("length/force", j->m));
+              model_unit(j->m, "length/force"));
     else
       fputs("inv(A)_tt is not bounded\n", f);
   }
@@ -161,7 +161,7 @@ static void print_bound(const job *j, const char *what, const theorems_bound *b,
   }
   fprintf(f, "  theory: %s: %s <= %s sqrt(%s)  %s\n", what,
           text_number(b->left, 4), text_number(b->right, 4),
-          column_unit("force*length", j->m), b->violated ? "VIOLATED" : "ok");
+          model_unit(j->m, "force*length"), b->violated ? "VIOLATED" : "ok");
 }
 
 /* Theorem 3.2: laws that flow under given friction. */
@@ -178,8 +178,8 @@ static void print_path(const job *j, const theorems_path *p, FILE *f) {
     fprintf(f,
             "  theory: (3.2) constant of the laws %s %s, below 1 for dt < %s "
             "%s; over the step after %.0f passes\n",
-            text_number(p->speed, 4), column_unit("1/time", j->m),
-            text_number(p->longest, 4), column_unit("time", j->m), p->passes);
+            text_number(p->speed, 4), model_unit(j->m, "1/time"),
+            text_number(p->longest, 4), model_unit(j->m, "time"), p->passes);
 }
 
 static void print_theory(const job *j, const state *s, FILE *f) {
@@ -216,7 +216,7 @@ static void print_energies(const job *j, const view *v, FILE *f) {
       continue;
     fprintf(f, "  %-24s %14s %s\n", c->name,
             text_number(c->value(v, 0, c->part), DIGITS),
-            column_unit(c->unit, j->m));
+            model_unit(j->m, c->unit));
   }
 }
 
@@ -243,7 +243,7 @@ static void print_error(const job *j, const state *s, FILE *f) {
       fprintf(f, "%s %% of the energy norm, ",
               text_number(100 * e->relative, 1));
     fprintf(f, "%s %s", text_number(e->energy, 1),
-            column_unit("force*length", j->m));
+            model_unit(j->m, "force*length"));
   }
   if (e->rate > 0) fprintf(f, "; contraction %s", text_number(e->rate, 2));
   fputc('\n', f);

@@ -112,9 +112,8 @@ double job_worse(double a, double b);
 /* Numbers of a step there. */
 size_t job_end_size(const model *m);
 /* goals.c: goal "id" at the last increment so far of the last step that has
- * one; NULL: none. Its unit with the labels of the deck. */
+ * one; NULL: none. */
 const goal_result *job_goal(const job *j, int id);
-const char *job_goal_unit(const model *m, int id);
 /* passes.c: the errors of all goals after pass number "pass" of "goals" as
  * columns, and their heads. The error of one, % of its value. */
 void passes_goal_heads(const model *m, FILE *f);

@@ -157,6 +157,7 @@ static status make_matrices(run *r, int chosen) {
   else
     run_free_surface(r);
   r->body.d.surface = r->surface;
+  PASS(setup_check_circles(r));
   PASS(run_check_supports(r, &motions));
   PASS(choose_nodes(r, motions));
   r->problem.n_before = r->nodes.n_row;
@@ -261,6 +262,7 @@ status run_motions(run *r, int *n, free_motion **list) {
   PASS(run_build_ties(r));
   if (r->m->effects & EFFECT_CONTACT) PASS(run_build_surface(r));
   r->body.d.surface = r->surface;
+  PASS(setup_check_circles(r));
   int n_free;
   PASS(find_motions(r, HELD_BY_CONTACT, &n_free, n, list));
   return effects_prepare(r);

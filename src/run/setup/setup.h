@@ -8,6 +8,10 @@
  * ERR_MEMORY. */
 status setup_adjust(model *m, mesh *msh);
 
+/* circles.c, once ties and surface are made: ERR_DECK with an error in the log
+ * if their nodes move with each other in a circle; ERR_MEMORY. */
+status setup_check_circles(const run *r);
+
 /* facing.c: p->group, of the contact p with an obstacle, becomes a new group of
  * its faces that face the obstacle at time 0, without those on the axis of
  * symmetry; a warning where contact acts along the mean of faces that meet at

@@ -102,7 +102,8 @@ status run_build_surface(run *r) {
 
 void run_free_ties(run *r) {
   const node_links *to = &r->body.ties.to;
-  RELEASE(r->body.ties.node_id, to->start, to->master, to->part);
+  RELEASE(r->body.ties.node_id, r->body.ties.tie_id, to->start, to->master,
+          to->part);
   r->body.ties = (tie_set){0};
   r->body.d.ties = NULL;
 }
@@ -158,8 +159,9 @@ static status join(run *r, mortar *const *m) {
     n_row += m[i]->n;
     n_part += m[i]->to.start[m[i]->n];
   }
-  PASS_NEW_ALL(OF(t->node_id, n_row), OF(t->to.start, n_row + 1),
-               OF(t->to.master, n_part), OF(t->to.part, r->msh->dim * n_part));
+  PASS_NEW_ALL(OF(t->node_id, n_row), OF(t->tie_id, n_row),
+               OF(t->to.start, n_row + 1), OF(t->to.master, n_part),
+               OF(t->to.part, r->msh->dim * n_part));
   t->to.dim = r->msh->dim;
   while ((size_t)t->n < n_row) {
     int least = -1;
@@ -168,6 +170,7 @@ static status join(run *r, mortar *const *m) {
           (least < 0 ||
            m[i]->node_id[next[i]] < m[least]->node_id[next[least]]))
         least = i;
+    t->tie_id[t->n] = least;
     add_node(r, m[least], next[least]++, t);
   }
   t->to.n = t->n;
