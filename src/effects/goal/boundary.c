@@ -515,10 +515,11 @@ static double slope_of(const mesh *m, int elem, const double *u, int component,
   return sum;
 }
 
-/* Sides between two regions: m with these faces alone, of the lower region, as
- * if they were free; back[n_face] the elements behind, new. */
-static status between_regions(const mesh *m, const space_recovery *of,
-                              mesh *out, int **back) {
+/* Sides between elements of several parts: m with these faces alone, of the
+ * lower part[n_elem], as if they were free; back[n_face] the elements behind,
+ * new. */
+static status between_parts(const mesh *m, const int *part, mesh *out,
+                            int **back) {
   const int dim = m->dim, n = (dim + 1) * m->n_elem;
   OWNED size_t *start = NULL;
   OWNED int *elem = NULL;
@@ -534,9 +535,7 @@ static status between_regions(const mesh *m, const space_recovery *of,
       int met = 0;
       for (int i = 0; i < dim * (dim + 1); ++i)
         met += m->elem[(dim + 1) * elem[k] + i / dim] == v[i % dim];
-      if (met < dim ||
-          space_region(of, elem[k]) <= space_region(of, side / (dim + 1)))
-        continue;
+      if (met < dim || part[elem[k]] <= part[side / (dim + 1)]) continue;
       (*back)[out->n_face] = elem[k];
       out->face_other[out->n_face] = -1;
       out->face_elem[out->n_face++] = side / (dim + 1);
@@ -623,10 +622,11 @@ status goal_add_interfaces(const run *r, const space_recovery *of, double *dF,
   mesh sides;
   int *back;
   if (space_regions(of) < 2) return OK;
-  PASS_NEW_ALL(OF(to->volume, r->msh->n_elem),
+  PASS_NEW_ALL(OF(to->volume, r->msh->n_elem), OF(to->region, r->msh->n_elem),
                OF(to->strain, (size_t)r->m->ns * r->msh->n_elem));
+  for (int e = 0; e < r->msh->n_elem; ++e) to->region[e] = space_region(of, e);
   SCRATCH;
-  PASS(between_regions(r->msh, of, &sides, &back));
+  PASS(between_parts(r->msh, to->region, &sides, &back));
   seen.msh = &sides;
   OWNED_PARTS(smooth_faces, rings, smooth_faces_new(&sides, &rings));
   for (int f = 0; f < sides.n_face; ++f) {
@@ -636,16 +636,35 @@ status goal_add_interfaces(const run *r, const space_recovery *of, double *dF,
   return OK;
 }
 
+status goal_volumes_of(const run *r, const mesh_group *g, const int *region,
+                       double *volume) {
+  run seen = *r;
+  mesh sides;
+  int *back;
+  SCRATCH;
+  OWNED_NEW(int, part, r->msh->n_elem);
+  for (int k = 0; k < g->n_item; ++k) part[g->item_id[k]] = -1;
+  PASS(between_parts(r->msh, part, &sides, &back));
+  seen.msh = &sides;
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(&sides, &rings));
+  for (int f = 0; f < sides.n_face; ++f) {
+    const int e = sides.face_elem[f];
+    const patch p = face_patch(&seen, &rings, f);
+    if (region == NULL || region[e] == region[back[f]])
+      volume[e] += volume_beyond(r, &p);
+  }
+  return OK;
+}
+
 /* ---- means --------------------------------------------------------------- */
 
 /* The integral of u less its mean over the surface less that over a face; of a
  * volume, over what is beyond it. */
-static double beyond_face(const run *r, const patch *p, int face,
-                          const goal_mean *w, double mean) {
+static double beyond_face(const run *r, const patch *p, const goal_mean *w,
+                          double mean) {
   const mesh *m = r->msh;
   const int of_faces = m->group[w->group_id].dim < m->dim;
-  const double rise =
-      slope_of(m, m->face_elem[face], r->now.u, w->component, p->normal);
+  const double rise = slope_of(m, p->elem, r->now.u, w->component, p->normal);
   double sum = 0.0;
   for (int k = 0; k < p->n; ++k) {
     const spot s = spot_at(m, p, k);
@@ -662,19 +681,63 @@ static double beyond_face(const run *r, const patch *p, int face,
   return sum;
 }
 
+/* Of the curved faces in[], or all. */
+static status beyond_faces(const run *r, const unsigned char *in,
+                           const goal_mean *w, double mean, double *sum) {
+  const mesh *m = r->msh;
+  const int of_faces = m->group[w->group_id].dim < m->dim;
+  *sum = 0.0;
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(m, &rings));
+  for (int f = 0; f < m->n_face; ++f) {
+    if (m->face_other[f] >= 0 ||
+        (in != NULL && !in[of_faces ? f : m->face_elem[f]]))
+      continue;
+    const patch p = face_patch(r, &rings, f);
+    if (p.is_curved) *sum += w->factor * beyond_face(r, &p, w, mean);
+  }
+  return OK;
+}
+
+/* m with the faces of a group between two elements alone, of each of both, as
+ * if they were free. */
+static status inner_faces(const mesh *m, const mesh_group *g, mesh *out) {
+  const int dim = m->dim, n = 2 * g->n_item;
+  *out = *m;
+  out->n_face = 0;
+  PASS_NEW_ALL(OF(out->face, dim * n), OF(out->face_elem, n),
+               OF(out->face_other, n));
+  for (int k = 0; k < n; ++k) {
+    const int f = g->item_id[k / 2], to = out->n_face;
+    if (m->face_other[f] < 0) continue;
+    COPY(out->face + dim * to, m->face + dim * f, dim);
+    for (int i = 0; i < 2 && k % 2 == 1; ++i)
+      out->face[dim * to + i] = m->face[dim * f + 1 - i];
+    out->face_other[to] = -1;
+    out->face_elem[to] = k % 2 == 0 ? m->face_elem[f] : m->face_other[f];
+    ++out->n_face;
+  }
+  return OK;
+}
+
 status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
                         double *sum) {
   const mesh *m = r->msh;
   const mesh_group *g = &m->group[w->group_id];
-  *sum = 0.0;
-  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(m, &rings));
+  const int of_faces = g->dim < m->dim;
+  run seen = *r;
+  mesh sides;
+  int *back;
+  double inside;
+  SCRATCH;
   OWNED_NEW(unsigned char, in, m->n_face + m->n_elem);
+  OWNED_NEW(int, part, m->n_elem);
   for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
-  for (int f = 0; f < m->n_face; ++f) {
-    if (m->face_other[f] >= 0 || !in[g->dim < m->dim ? f : m->face_elem[f]])
-      continue;
-    const patch p = face_patch(r, &rings, f);
-    if (p.is_curved) *sum += w->factor * beyond_face(r, &p, f, w, mean);
-  }
+  PASS(beyond_faces(r, in, w, mean, sum));
+  for (int e = 0; e < m->n_elem; ++e) part[e] = -in[e];
+  PASS(of_faces ? inner_faces(m, g, &sides)
+                : between_parts(m, part, &sides, &back));
+  seen.msh = &sides;
+  PASS(beyond_faces(&seen, NULL, w, mean, &inside));
+  *sum += of_faces ? 0.5 * inside : inside;
   return OK;
 }

@@ -214,6 +214,7 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   double whole = 0.0;
   OWNED_NEW(double, beyond, r->msh->n_elem);
   PASS(find_beyond(r, f, beyond));
+  PASS(goal_volumes_of(r, of, f->of_all.region, beyond));
   for (int k = 0; k < of->n_item; ++k)
     whole += element_weight(d, of->item_id[k]);
   for (int k = 0; k < of->n_item; ++k) {
