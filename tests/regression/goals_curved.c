@@ -79,7 +79,7 @@ static void check_body(const char *geo, const char *section, const char *z,
   check_goal(&t, 1, c->u(2.0), c->off);
   check_goal(&t, 2, c->along * c->u(2.0), 0.15);
   check_goal(&t, 3, 50.0 * c->area * c->u(1.0), 0.1);
-  if (c->u == of_ring) check_goal(&t, 4, 20.0, 0.1);
+  if (c->u == of_ring) check_goal(&t, 4, 20.0, c->area < 1.0 ? 0.03 : 0.1);
   if (c->u == of_core) check_goal(&t, 4, -16.8 / 0.82, 0.1);
   if (c->u == of_core) check_goal(&t, 5, 4.0 / 3.0 * M_1_PI * c->u(1.0), 0.1);
 }
@@ -361,7 +361,7 @@ TESTS(shaft_turns_in_a_ring, 2) {
  * of the support in two of its faces are as far from it as those in one. */
 TEST(slice_that_a_curved_support_holds) {
   JOB j = job_begin("held");
-  job_write(&j, "held.geo", "%sMesh.MeshSizeMax = 0.3;\n", SLICE);
+  job_write(&j, "held.geo", "%sMesh.MeshSizeMax = 0.2;\n", SLICE);
   job_write(&j, "held.inp",
             "*MESH, FILE=held.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -372,8 +372,8 @@ TEST(slice_that_a_curved_support_holds) {
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   DAT t = job_table(&j, "GOALS", -1);
-  check_goal(&t, 0, 6e-4, 0.015);
-  check_goal(&t, 1, 50.0 * M_PI / 4 * 6e-4, 0.1);
+  check_goal(&t, 0, 6e-4, 0.055);
+  check_goal(&t, 1, 50.0 * M_PI / 4 * 6e-4, 0.03);
 }
 
 /* All of its round surfaces are given u = 1e-3 (x, y), which linear elements
