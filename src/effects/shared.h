@@ -7,6 +7,14 @@
 /* nonlocal.c: [n*n] - of a contact whose law has an average. */
 const sparse_rows *nonlocal_average(const run *r, int contact_id);
 
+/* wear.c: the depths so far, *n reals; NULL: nothing wears. */
+double *wear_depths(const run *r, size_t *n);
+/* To them, what wears off from r->old to r->now; *known = 0: it has a part at
+ * corners, which is that from the last increment. ERR_MEMORY. */
+status wear_take(run *r, int *known);
+/* -, what other depths are else, in the mean square over the surface. */
+double wear_difference(const run *r, const double *depth);
+
 /* mesh.c: the patches of elements of r->body.d, made with the elastic matrix of
  * now; borrowed until that changes. *out NULL: the run has no error of the
  * mesh. ERR_MEMORY. */

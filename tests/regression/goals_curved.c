@@ -67,6 +67,7 @@ static void check_body(const char *geo, const char *section, const char *z,
       "*GOAL, NAME=MEAN, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=OUTER\n"
       "*GOAL, NAME=ENERGY, QUANTITY=ENERGY\n"
       "*GOAL, NAME=ZZ, QUANTITY=STRESS, COMPONENT=ZZ, GROUP=BODY\n"
+      "*GOAL, NAME=ALL, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=BODY\n"
       "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, "
       "2\nLEFT, 1\n%s"
       "*PRINT, GOALS\n*END STEP\n",
@@ -78,8 +79,9 @@ static void check_body(const char *geo, const char *section, const char *z,
   check_goal(&t, 1, c->u(2.0), c->off);
   check_goal(&t, 2, c->along * c->u(2.0), 0.15);
   check_goal(&t, 3, 50.0 * c->area * c->u(1.0), 0.1);
-  if (c->u == of_ring) check_goal(&t, 4, 20.0, 0.1);
+  if (c->u == of_ring) check_goal(&t, 4, 20.0, c->area < 1.0 ? 0.03 : 0.1);
   if (c->u == of_core) check_goal(&t, 4, -16.8 / 0.82, 0.1);
+  if (c->u == of_core) check_goal(&t, 5, 4.0 / 3.0 * M_1_PI * c->u(1.0), 0.1);
 }
 
 #define PRESSED "*DSLOAD\nINNER, P, 100.\n"
@@ -121,7 +123,17 @@ TEST(hole_without_a_name_is_round) {
              &(closed){of_hole, M_2_PI, -M_PI * 1.3 / 1.4, 0.15});
 }
 
-/* In the place of the hole a core, BODY, of a tenth of the stiffness. */
+/* A core, BODY, in the place of the hole. */
+#define CORED                                                          \
+  RING "Line(5) = {1, 2}; Line(6) = {5, 1};\n"                         \
+       "Curve Loop(2) = {5, -4, 6}; Plane Surface(2) = {2};\n"         \
+       "Physical Surface(\"BODY\") = {2};\n"                           \
+       "Physical Surface(\"RIM\") = {1};\n"                            \
+       "Physical Curve(\"BOTTOM\") = {1, 5};\n"                        \
+       "Physical Curve(\"OUTER\") = {2}; Physical Curve(\"INNER\") = " \
+       "{4};\nPhysical Curve(\"LEFT\") = {3, 6};\n"
+
+/* Of a tenth of the stiffness. */
 static double of_core(double r) { return -5.2e-5 / 0.82 * (r + 1.8 / r); }
 static double of_ball_core(double r) {
   return -3.1e-4 / 7.0 * (r + 39.0 / 31.0 / (r * r));
@@ -136,20 +148,13 @@ TEST(interface_of_materials_is_round) {
            ", TYPE=%s\n*MATERIAL, NAME=S\n*ELASTIC\n1.D6, 0.3\n"
            "*SOLID SECTION, ELSET=RIM, MATERIAL=S, TYPE=%s",
            _i == 0 ? "CPE3" : "CAX3", _i == 0 ? "CPE3" : "CAX3");
-  check_body(RING
-             "Line(5) = {1, 2}; Line(6) = {5, 1};\n"
-             "Curve Loop(2) = {5, -4, 6}; Plane Surface(2) = {2};\n"
-             "Physical Surface(\"BODY\") = {2};\n"
-             "Physical Surface(\"RIM\") = {1};\n"
-             "Physical Curve(\"BOTTOM\") = {1, 5};\n"
-             "Physical Curve(\"OUTER\") = {2};\n"
-             "Physical Curve(\"LEFT\") = {3, 6};\n",
-             section, "", "*DSLOAD\nOUTER, P, 100.\n", &on[_i]);
+  check_body(CORED, section, "", "*DSLOAD\nOUTER, P, 100.\n", &on[_i]);
 }
 
 /* A hole of three edges in its quarter in a wide disc: the bubbles see half to
- * 0.8 of the error, and recovered stresses that. */
-TEST(few_elements_round_a_hole) {
+ * 0.8 of the error, and recovered stresses that. In a ball the mean stresses
+ * are -A and half the mean of A/r^3 more and less. */
+TESTS(few_elements_round_a_hole, 2) {
   job j = job_begin("hole");
   job_write(
       &j, "hole.geo", "%s",
@@ -160,18 +165,24 @@ TEST(few_elements_round_a_hole) {
       "Plane Surface(1) = {1}; Mesh.MeshSizeMax = 0.6;\n" UNNAMED);
   job_write(&j, "hole.inp",
             "*MESH, FILE=hole.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
             "*GOAL, NAME=OUT, QUANTITY=DISPLACEMENT, COMPONENT=1\n6., 0.\n"
             "*GOAL, NAME=MEAN, QUANTITY=DISPLACEMENT, COMPONENT=1, "
             "GROUP=OUTER\n"
+            "*GOAL, NAME=XX, QUANTITY=STRESS, COMPONENT=XX, GROUP=BODY\n"
+            "*GOAL, NAME=ZZ, QUANTITY=STRESS, COMPONENT=ZZ, GROUP=BODY\n"
             "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n"
-            "*DSLOAD\nOUTER, P, 100.\n*PRINT, GOALS\n*END STEP\n");
+            "*DSLOAD\nOUTER, P, 100.\n*PRINT, GOALS\n*END STEP\n",
+            _i == 0 ? "CPE3" : "CAX3");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   const double u = -1.3e-3 * 36 / 35 * (0.4 * 6 + 1 / 6.0);
+  const double A = 21600 / 215.0, more = 1.5 * A * log(6) / 215;
   dat t = job_table(&j, "GOALS", -1);
-  check_goal(&t, 0, u, 0.55);
-  check_goal(&t, 1, M_2_PI * u, 0.45);
-  ck_assert(goal_has_verdict(&j, "OUT", "few_elements"));
+  if (_i == 0) check_goal(&t, 0, u, 0.55);
+  if (_i == 0) check_goal(&t, 1, M_2_PI * u, 0.45);
+  if (_i == 1) check_goal(&t, 2, -A + more, 0.65);
+  if (_i == 1) check_goal(&t, 3, -A - more, 0.5);
+  ck_assert(goal_has_verdict(&j, _i == 0 ? "OUT" : "XX", "few_elements"));
   dat_free(&t);
   job_end(&j);
 }
@@ -201,6 +212,32 @@ TESTS(forces_on_the_body_beyond_chords, 2) {
   if (_i == 0) check_goal(&t, 0, u, 0.15);
   if (_i == 0) check_goal(&t, 1, M_2_PI * u, 0.15);
   if (_i == 1) check_goal(&t, 2, -1000 * 7.0 / 3 / (0.75 * M_PI), 0.1);
+}
+
+/* A disc that turns as that above, without a hole: means over a core that is
+ * but a group of its elements, over the rim, over the surface between. */
+TEST(groups_within_a_body_are_round) {
+  const double u = 1000 * 0.7 / 8e5;
+  JOB j = job_begin("core");
+  job_write(&j, "core.geo", "%s", CORED);
+  job_write(&j, "core.inp",
+            "*MESH, FILE=core.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+            "*SOLID SECTION, ELSET=RIM, MATERIAL=M, TYPE=CPS3\n"
+            "*GOAL, NAME=A, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=BODY\n"
+            "*GOAL, NAME=B, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=RIM\n"
+            "*GOAL, NAME=C, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=INNER\n"
+            "*GOAL, NAME=XX, QUANTITY=STRESS, COMPONENT=XX, GROUP=BODY\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*DLOAD\n"
+            "BODY, BX, \"1000*x\"\nBODY, BY, \"1000*y\"\n"
+            "RIM, BX, \"1000*x\"\nRIM, BY, \"1000*y\"\n"
+            "*PRINT, GOALS\n*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  DAT t = job_table(&j, "GOALS", -1);
+  check_goal(&t, 0, 4 * M_1_PI * u * (4.4 - 0.26), 0.05);
+  check_goal(&t, 1, 4 * M_1_PI / 3 * u * (4.4 * 7 - 0.26 * 31), 0.05);
+  check_goal(&t, 2, M_2_PI * u * 11.9, 0.05);
+  check_goal(&t, 3, 1487.5, 0.12);
 }
 
 /* The mean of a stress is that of the whole body, which the mesh is not: by the
@@ -324,7 +361,7 @@ TESTS(shaft_turns_in_a_ring, 2) {
  * of the support in two of its faces are as far from it as those in one. */
 TEST(slice_that_a_curved_support_holds) {
   JOB j = job_begin("held");
-  job_write(&j, "held.geo", "%sMesh.MeshSizeMax = 0.3;\n", SLICE);
+  job_write(&j, "held.geo", "%sMesh.MeshSizeMax = 0.2;\n", SLICE);
   job_write(&j, "held.inp",
             "*MESH, FILE=held.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -335,8 +372,8 @@ TEST(slice_that_a_curved_support_holds) {
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   DAT t = job_table(&j, "GOALS", -1);
-  check_goal(&t, 0, 6e-4, 0.015);
-  check_goal(&t, 1, 50.0 * M_PI / 4 * 6e-4, 0.1);
+  check_goal(&t, 0, 6e-4, 0.055);
+  check_goal(&t, 1, 50.0 * M_PI / 4 * 6e-4, 0.03);
 }
 
 /* All of its round surfaces are given u = 1e-3 (x, y), which linear elements
@@ -345,7 +382,10 @@ TEST(slice_that_a_curved_support_holds) {
 TESTS(ring_whose_round_surfaces_are_given, 2) {
   const double stress = _i ? 1e2 / 0.52 : 1e2 / 0.7;
   JOB j = job_begin("given");
-  job_write(&j, "given.geo", "%sMesh.MeshSizeMax = 0.5;\n", QUARTER);
+  job_write(&j, "given.geo",
+            "%sMesh.MeshSizeMax = 0.5;\n"
+            "Transfinite Curve{2, 4} = 9 Using Progression 1.25;\n",
+            QUARTER);
   job_write(&j, "given.inp",
             "*MESH, FILE=given.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"

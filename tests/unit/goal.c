@@ -394,6 +394,19 @@ TEST(few_nodes_have_a_wider_band) {
   ck_assert_double_eq(goal_evaluate(&e).band, band + 1.5);
 }
 
+/* Round hollows twice what recovered stresses tell more, or the sum of its
+ * magnitudes. */
+TEST(hollows_have_a_wider_band) {
+  goal_estimate e = {.error = -0.5, .magnitude = 2.0, .product = 5.0};
+  const double band = goal_evaluate(&e).band;
+  e.twice = -0.125;
+  e.hollow = 0.75;
+  ck_assert_double_eq(goal_evaluate(&e).band, band + 0.75);
+  ck_assert_int_eq(goal_evaluate(&e).verdict, GOAL_FEW_ELEMENTS);
+  e.twice = -0.5;
+  ck_assert_double_eq(goal_evaluate(&e).band, band + 1.0);
+}
+
 /* A zone that began with few nodes has still what they lacked. */
 TEST(sums_keep_the_doubts_of_their_parts) {
   const goal_estimate few = {.error = 0.5, .magnitude = 0.5, .few = 0.5};

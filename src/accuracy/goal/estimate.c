@@ -636,9 +636,12 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   int ends = 0;
   for (int a = 0; a <= m->dim; ++a)
     ends |= e->s.surface->ends[m->elem[(m->dim + 1) * elem_id + a]];
-  if (ends == GOAL_HOLLOW && !of_u && tau == NULL)
-    out->twice += like + given - residual;
-  ends &= ~GOAL_HOLLOW;
+  const double lacks = like + given - residual;
+  if ((ends & ~GOAL_FEW_EDGES) == GOAL_HOLLOW && !of_u) {
+    out->twice += lacks;
+    if (ends != GOAL_HOLLOW) out->hollow += fabs(lacks);
+  }
+  ends &= ~(GOAL_HOLLOW | GOAL_FEW_EDGES);
   if (ends == GOAL_NEAR_SUPPORT) out->near += both;
   ends &= ~GOAL_NEAR_SUPPORT;
   if (ends != 0) out->ends += both;

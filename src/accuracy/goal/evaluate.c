@@ -17,7 +17,8 @@ static const double HOOP = 0.2;      /* -, the same by the hoop strains */
 static const double ROUNDING = 1e-9; /* -, the same: elements without error */
 static const double HISTORY = 0.25;  /* -, of what the increments before add */
 /* Measured round holes of 4 to 80 edges: of what the estimate lacks recovered
- * stresses of both have half or more. */
+ * stresses of both have half or more; where what they have cancels, the sum of
+ * its magnitudes. */
 static const double TWICE = 2.0; /* -, band by it */
 
 static const struct {
@@ -67,11 +68,11 @@ static double share_of(const goal_estimate *e, double part) {
 }
 
 goal_result goal_evaluate(const goal_estimate *e) {
+  const double hollow = fmax(TWICE * fabs(e->twice), e->hollow);
   goal_result r = {.error = e->error,
                    .band = BAND * e->magnitude + e->ends +
                            (SHARP - 1.0) * (e->sharp + e->few) +
-                           HISTORY * e->history + HOOP * fabs(e->hoop) +
-                           TWICE * fabs(e->twice),
+                           HISTORY * e->history + HOOP * fabs(e->hoop) + hollow,
                    .ends = share_of(e, e->ends)};
   if (e->few > TRUSTED * fabs(e->error))
     r.verdict = GOAL_FEW_NODES;
@@ -82,7 +83,7 @@ goal_result goal_evaluate(const goal_estimate *e) {
     r.verdict = GOAL_SUPPORT_END;
   else if (fabs(e->error) < fmax(LEFT * e->magnitude, HOOP * fabs(e->hoop)))
     r.verdict = GOAL_CANCELS;
-  else if (TWICE * fabs(e->twice) > fabs(e->error))
+  else if (hollow > fabs(e->error))
     r.verdict = GOAL_FEW_ELEMENTS;
   return r;
 }

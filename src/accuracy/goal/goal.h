@@ -54,6 +54,7 @@ typedef struct goal_estimate {
   double sharp;     /* of ends what GOAL_END_OF_SUPPORT has */
   double near;      /* the same of the elements next to those of sharp */
   double twice;   /* by recovered stresses of both less error, round hollows */
+  double hollow;  /* sum of the magnitudes of that where edges are few */
   double history; /* sum of the magnitudes by the increments before */
   double hoop;    /* by the hoop strains of axisymmetric elements, which the
                      stiffness takes at their mean radius */
@@ -133,8 +134,9 @@ enum {
   GOAL_END_OF_CONTACT = 1,
   GOAL_END_OF_SUPPORT = 2,
   GOAL_NEAR_SUPPORT = 4, /* of an element with such a node */
-  GOAL_HOLLOW = 8        /* of a hollow of the border, in the plane, or a curved
-                            interface */
+  GOAL_HOLLOW = 8,    /* of a hollow of the border, or, in the plane, a curved
+                         interface */
+  GOAL_FEW_EDGES = 16 /* the same, less than 24 of them round a circle */
 };
 
 /* What the surface of the body does at the solution. */

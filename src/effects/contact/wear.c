@@ -11,6 +11,7 @@
  * refused.
  */
 #include "effects/plan/effect.h"
+#include "effects/shared.h"
 
 #include "run/column_row.h"
 
@@ -120,10 +121,17 @@ static const effect_card *find_wear(const run *r, double *D) {
   return worn;
 }
 
+static void take_off(const run *r, const double *D, double *depth) {
+  const int dim = r->msh->dim;
+  for (int i = 0; i < r->nodes.n; ++i)
+    for (int a = 0; a < dim; ++a)
+      depth[dim * r->surface->node_id[i] + a] -=
+          D[dim * i + a] * r->now.rc[dim * i + a];
+}
+
 /* An increment that did not converge, or goes on from one, may slip by
  * anything: it is not the wear that is refused, and none is taken. */
 static status wear_off(run *r, void *self) {
-  const int dim = r->msh->dim;
   double *depth = self, factor = 0.0;
   OWNED_NEW(double, D, r->nodes.n_c);
   const effect_card *worn = find_wear(r, D);
@@ -135,11 +143,36 @@ static status wear_off(run *r, void *self) {
   if (factor > 2.0)
     RAISE(ERR_DECK, "%s:%d: the increment is not stable", PLACE(worn->at));
   if (factor > 1.0) *told = 1.0;
-  for (int i = 0; i < r->nodes.n; ++i)
-    for (int a = 0; a < dim; ++a)
-      depth[dim * r->surface->node_id[i] + a] -=
-          D[dim * i + a] * r->now.rc[dim * i + a];
+  take_off(r, D, depth);
   return OK;
+}
+
+double *wear_depths(const run *r, size_t *n) {
+  *n = length_of(r);
+  return effect_state(&r->effects, &wear_effect);
+}
+
+status wear_take(run *r, int *known) {
+  OWNED_NEW(double, D, r->nodes.n_c);
+  for (int i = 0; i < r->nodes.n; ++i)
+    *known &= !surface_is_corner(r->surface, i);
+  find_wear(r, D);
+  take_off(r, D, effect_state(&r->effects, &wear_effect));
+  return OK;
+}
+
+double wear_difference(const run *r, const double *depth) {
+  const double *own = effect_state(&r->effects, &wear_effect);
+  double sum = 0.0, whole = 0.0;
+  for (int k = 0; k < r->msh->dim * r->nodes.n; ++k) {
+    const int i = k / r->msh->dim, a = k % r->msh->dim;
+    const int at = r->msh->dim * r->surface->node_id[i] + a;
+    if (surface_normal_of(r->surface, i, a) < 0) continue;
+    const double area = area_of(r->surface, i, a), less = depth[at] - own[at];
+    sum += area * less * less;
+    whole += area * own[at] * own[at];
+  }
+  return whole > 0.0 ? sqrt(sum / whole) : 0.0;
 }
 
 static status keep(run *r, void *self, archive *a) {
@@ -192,7 +225,7 @@ static const column columns[] = {
 const effect_ops wear_effect = {
   .name = "wear", .bit = NO_BIT, .required = requires_wear,
   .expected = expected, .table = {PRINT_WEAR, PER_CONTACT_NODE},
-  .sums_up = "wear of half the increments is not compared",
+  .sums_up = "wear of one static problem, no path",
   .size = sizeof(double), .count = length_of, .copy_as = COPY_IS_EQUAL,
   .on = {.pose = open_gaps, .accept = wear_off, .keep = keep},
   COLUMNS_OF(columns)};

@@ -204,8 +204,9 @@ void smooth_normal(const run *r, const smooth_faces *rings, int node,
     double other[3] = {0.0};
     if (m->face_other[face] >= 0) continue;
     const double measure = mesh_face_normal(m, face, other);
+    /* exact for a circle; its triangles are alike */
     if (dot(m->dim, own, other) >= SMOOTH)
-      add_scaled(m->dim, measure, other, n);
+      add_scaled(m->dim, m->dim == 2 ? 1.0 / measure : measure, other, n);
   }
   smooth_mirror(m->dim, held, own, n);
   make_unit(m->dim, n);

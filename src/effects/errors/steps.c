@@ -1,21 +1,24 @@
 /*
- * Error of the steps: the path of slip and the inelastic strains depend on the
- * increments. A shadow run of half the increments has its own contact forces,
- * slip and inelastic strains; the two meet at the end of each increment, where
- * the loads are the same.
+ * Error of the steps: the path of slip, the inelastic strains and wear depend
+ * on the increments. A shadow run of half the increments has its own contact
+ * forces, slip, inelastic strains and depths; the two meet at the end of each
+ * increment, where the loads are the same.
  *
  * Without inelastic strains their difference d has the energy d' A d of the
  * condensed stiffness. With them the stresses differ by E (B du - de^i), whose
  * energy is relative to that of the stresses, and the strains by B du, relative
  * to the strains: at constant stress a body still creeps. The larger of the two
  * relative differences is reported; of a body that has no stress left, that of
- * the strains, with those of the steps before.
+ * the strains, with those of the steps before. Depths that differ count in the
+ * same manner: a load that moves a body on wears it at constant forces.
  *
  * The error of the run is that difference times 2^p/(2^p - 1) for an integrator
  * of order p (Richardson), without friction; zones of stick and slip that grow
- * lie between order 1 and 2: 5/3, or more for an integrator of order 1.
+ * lie between order 1 and 2: 5/3, or more for an integrator of order 1, as
+ * wear.
  */
 #include "effects/plan/effect.h"
+#include "effects/shared.h"
 #include "run/history/loop.h"
 #include "run/visco.h"
 
@@ -28,6 +31,7 @@ static const double STRAIGHT = 10.0; /* -, of the tolerance of the solver */
 typedef struct waypoint {
   start_point start;
   flow_state flow; /* of the points whose law flows; empty: none */
+  double *depth;   /* of wear_depths, or NULL */
 } waypoint;
 
 /* Errors, sqrt(J). */
@@ -55,7 +59,9 @@ typedef struct paths {
 } paths;
 
 static status waypoint_new(const run *r, waypoint *w) {
+  size_t n;
   PASS(start_point_new(r, &w->start));
+  if (wear_depths(r, &n) != NULL) PASS_NEW(w->depth, n);
   if (r->strains.visco != NULL)
     PASS(flow_state_new(&r->strains.visco->x, &w->flow));
   return OK;
@@ -72,6 +78,9 @@ static status path_new(const run *r, finer_path *p) {
     flow_state_copy(&r->strains.visco->x, &r->strains.visco->old, &p->at.flow);
   }
   start_point_copy(r, &r->old, &p->at.start);
+  size_t n;
+  const double *depth = wear_depths(r, &n);
+  if (depth != NULL) COPY(p->at.depth, depth, n);
   return OK;
 }
 
@@ -87,18 +96,40 @@ static status lose(finer_path *p, const char *why) {
   return OK;
 }
 
-/* The equilibrium at t from where "from" stands, into "to", which may be the
- * same; lost where there is none. */
+/* The equilibrium at t from where "from" stands, r->now; *known: wear_take. */
+static status advance_from(run *r, waypoint *from, double t, waypoint *to,
+                           int *known) {
+  const int wears = from->depth != NULL;
+  equilibrium keep = start_point_use(r, &from->start);
+  status st = r->step->kind == STEP_VISCO && t > from->start.t
+                  ? visco_advance_from(r, &from->flow, t, &to->flow)
+                  : visco_settle_from(r, &from->flow, t, &to->flow);
+  if (st == OK && wears && r->solving.report.outcome > 0)
+    st = wear_take(r, known);
+  r->old = keep;
+  return st;
+}
+
+/* The same into "to", which may be the same; lost where there is none. */
 static status half(run *r, finer_path *p, waypoint *from, double t,
                    waypoint *to) {
+  size_t n;
+  int known = 1;
   if (p->lost) return OK;
-  equilibrium keep = start_point_use(r, &from->start);
-  const status st = r->step->kind == STEP_VISCO && t > from->start.t
-                        ? visco_advance_from(r, &from->flow, t, &to->flow)
-                        : visco_settle_from(r, &from->flow, t, &to->flow);
-  r->old = keep;
+  double *depth = wear_depths(r, &n);
+  OWNED_NEW(double, of_run, depth != NULL ? n : 1);
+  if (depth != NULL) {
+    COPY(of_run, depth, n);
+    COPY(depth, from->depth, n);
+  }
+  const status st = advance_from(r, from, t, to, &known);
+  if (depth != NULL) {
+    COPY(to->depth, depth, n);
+    COPY(depth, of_run, n);
+  }
   PASS(st);
   start_point_copy(r, &r->now, &to->start);
+  if (!known) return lose(p, "wear at corners of half the increments");
   return r->solving.report.outcome > 0
              ? OK
              : lose(p, "no equilibrium in half an increment");
@@ -115,7 +146,8 @@ static void restart(paths *own) {
 /* Only slip in increments and inelastic strains, those of steps before too,
  * depend on their path. */
 static int path_exists(const run *r) {
-  return effects_sum_up(r) == NULL && run_inherits(r);
+  return run_inherits(r) &&
+         (effects_sum_up(r) == NULL || r->step->kind != STEP_STATIC);
 }
 
 /* The attempt is accepted: the next one starts at its end. */
@@ -187,9 +219,10 @@ done:
 /* Energy norm of the difference of the paths without inelastic strains,
  * sqrt(J). */
 static double condensed_difference(const run *r, finer_path *p) {
-  vector_of(r->nodes.n_c, p->end.start.uc, r->now.uc, p->d);
+  vector_of(r->nodes.n_c, p->end.start.uc, r->now.uc, p->Ad);
+  run_take_rows(r, p->Ad, p->d);
   condensed_product(r->c, p->d, p->Ad);
-  return sqrt(fmax(dot(r->nodes.n_c, p->d, p->Ad), 0.0));
+  return sqrt(fmax(dot(r->nodes.n_row, p->d, p->Ad), 0.0));
 }
 
 /* sqrt(2 E) of displacements and strains without stress (NULL: none). */
@@ -232,6 +265,7 @@ static path_error field_difference(const run *r, finer_path *p) {
 
 /* From the difference to half the increments to the error. */
 static double extrapolation(const run *r) {
+  if (effects_sum_up(r) != NULL) return 2.0;
   if (r->step->kind != STEP_VISCO || r->strains.visco == NULL)
     return EXTRAPOLATION;
   if (visco_order(r->step) < 2) return 2.0;
@@ -260,6 +294,10 @@ static status measure(run *r, paths *own, double *norm) {
     p->error = p->u != NULL ? field_difference(r, p)
                             : (path_error){condensed_difference(r, p), 0.0};
     p->factor = fmax(p->factor, extrapolation(r));
+    if (p->end.depth != NULL)
+      p->error.norm =
+          fmax(p->error.norm, wear_difference(r, p->end.depth) *
+                                  sqrt(2.0 * fmax(r->now.energy.strain, 0.0)));
     p->error.norm *= p->factor;
     p->error.strain *= p->factor;
   }
@@ -318,7 +356,7 @@ static status compare(run *r, void *self) {
   e->relative = 0.0;
   e->why = NULL;
   if (!e->asked) return OK;
-  if (effects_sum_up(r) != NULL) e->relative = NAN;
+  if (effects_sum_up(r) != NULL && !path_exists(r)) e->relative = NAN;
   if (path_exists(r))
     PASS(compare_path(r, own, e));
   else
@@ -352,7 +390,10 @@ static status keep_waypoint(const run *r, waypoint *w, archive *a) {
                      w->start.motion == NULL ? 0 : m));
   if (r->strains.visco != NULL)
     PASS(visco_keep_flow(&r->strains.visco->x, &w->flow, a, "path_flow"));
-  return OK;
+  size_t n;
+  return wear_depths(r, &n) == NULL
+             ? OK
+             : archive_reals(a, "path_depth", w->depth, n);
 }
 
 static status keep(run *r, void *self, archive *a) {
@@ -516,7 +557,8 @@ static status attempt_balanced(run *r, paths *own) {
 static status march(run *r, void *self, int *made) {
   paths *own = self;
   double end = r->step->start + r->step->total;
-  if (!r->step->accuracy.time_balanced || !path_exists(r) || !run_remembers(r))
+  if (!r->step->accuracy.time_balanced || effects_sum_up(r) != NULL ||
+      !path_exists(r) || !run_remembers(r))
     return OK;
   *made = 1;
   if (r->at.increment_no == 0) r->at.error = total_error(own);

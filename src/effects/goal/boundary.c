@@ -25,8 +25,9 @@ typedef struct patch {
   int elem;       /* of a face */
   double weight;  /* measure times thickness */
   double normal[3];
-  double B[3][3]; /* of the edges of a face, m */
-  double g[4][3]; /* gradients of the P1 functions along a face, 1/m */
+  double of[4][3]; /* of the surface at its corners, if it is curved */
+  double B[3][3];  /* of the edges of a face, m */
+  double g[4][3];  /* gradients of the P1 functions along a face, 1/m */
   int is_curved;
 } patch;
 
@@ -34,6 +35,7 @@ typedef struct patch {
 typedef struct spot {
   double b[4], x[3], on[3]; /* barycentric; of the patch; of the surface */
   double beyond, slope[3];  /* o, m; its gradient along the face */
+  double area[3];           /* of the surface over that of the patch, outward */
   double weight;            /* of the patch */
 } spot;
 
@@ -66,6 +68,33 @@ void goal_rule_point(int n, int k, int pieces, double *b) {
       b[i] += corner[j][i] * (j == k % n ? AT[n] : (1.0 - AT[n]) / (n - 1));
 }
 
+/* s->area of a curved patch. In space the surface is o beyond it along the
+ * normals of its corners, which meet those of the patches around: along its own
+ * there would be gaps between, of as much area as o makes. */
+static void set_area(const mesh *m, const patch *p, spot *s) {
+  double side[2][3];
+  for (int c = 0; c < 3; ++c) s->area[c] = p->normal[c] - s->slope[c];
+  if (m->dim == 2 || !p->is_curved) return;
+  for (int a = 0; a < 2; ++a) {
+    const double *x[2] = {m->x + 3 * p->node[0], m->x + 3 * p->node[a + 1]};
+    double along = 0.0;
+    for (int c = 0; c < 3; ++c) along += s->slope[c] * (x[1][c] - x[0][c]);
+    for (int c = 0; c < 3; ++c) {
+      double normal = 0.0;
+      for (int i = 0; i < 3; ++i) normal += s->b[i] * p->of[i][c];
+      side[a][c] = x[1][c] - x[0][c] + along * normal +
+                   s->beyond * (p->of[a + 1][c] - p->of[0][c]);
+    }
+  }
+  double flat[2][3], whole[3];
+  for (int a = 0; a < 2; ++a)
+    vector_of(3, m->x + 3 * p->node[0], m->x + 3 * p->node[a + 1], flat[a]);
+  cross(flat[0], flat[1], whole);
+  cross(side[0], side[1], s->area);
+  const double twice = dot(3, whole, p->normal);
+  for (int c = 0; c < 3; ++c) s->area[c] /= twice;
+}
+
 /* Point k of a patch in pieces. */
 static spot spot_in(const mesh *m, const patch *p, int k, int pieces) {
   spot s = {.weight = p->weight / p->n / pieces};
@@ -81,6 +110,7 @@ static spot spot_in(const mesh *m, const patch *p, int k, int pieces) {
             4.0 * p->B[i][j] * (s.b[i] * p->g[j][c] + s.b[j] * p->g[i][c]);
     }
   for (int c = 0; c < 3; ++c) s.on[c] = s.x[c] + s.beyond * p->normal[c];
+  set_area(m, p, &s);
   return s;
 }
 
@@ -163,15 +193,15 @@ status goal_add_bent(const run *r, const smooth_faces *rings, goal_surface *s) {
 
 static void set_bulges(const run *r, const smooth_faces *rings, patch *p) {
   const mesh *m = r->msh;
-  double n[3][3], length = 0.0, most = 0.0;
+  double length = 0.0, most = 0.0;
   for (int i = 0; i < p->n; ++i)
-    smooth_normal(r, rings, p->node[i], p->normal, n[i]);
+    smooth_normal(r, rings, p->node[i], p->normal, p->of[i]);
   for (int i = 0; i < p->n; ++i)
     for (int j = i + 1; j < p->n; ++j) {
       for (int c = 0; c < m->dim; ++c) {
         const double d =
             m->x[m->dim * p->node[j] + c] - m->x[m->dim * p->node[i] + c];
-        p->B[i][j] += (n[j][c] - n[i][c]) * d / 8.0;
+        p->B[i][j] += (p->of[j][c] - p->of[i][c]) * d / 8.0;
         length = fmax(length, fabs(d));
       }
       most = fmax(most, fabs(p->B[i][j]));
@@ -296,12 +326,11 @@ int goal_load_varies(const load *l) {
 /* Direction of a load on the patch, and beyond it with a ratio of areas. */
 static void directions(const load *l, int dim, const patch *p, const spot *s,
                        double *flat, double *bent) {
-  const double slope = dot(dim, s->slope, s->slope);
+  const double area = p->is_curved ? sqrt(dot(dim, s->area, s->area)) : 1.0;
   for (int c = 0; c < dim; ++c) {
     const double along = c == l->component;
     flat[c] = l->kind == LOAD_PRESSURE ? -p->normal[c] : along;
-    bent[c] = l->kind == LOAD_PRESSURE ? s->slope[c] - p->normal[c]
-                                       : along * sqrt(1.0 + slope);
+    bent[c] = l->kind == LOAD_PRESSURE ? -s->area[c] : along * area;
   }
 }
 
@@ -384,10 +413,10 @@ static status rim_new(const mesh *m, const mesh_group *g, rim_edge **e,
   return OK;
 }
 
-/* Of the rim at end k of an edge, as smooth_normal; next[2*n] the other end
- * with the same node in a ring. */
-static void out_at(const run *r, const rim_edge *e, const int *next, int k,
-                   double *out) {
+/* Of the rim at end k of an edge, as smooth_normal, along the surface that is
+ * smooth there; next[2*n] the other end with the same node in a ring. */
+static void out_at(const run *r, const smooth_faces *rings, const rim_edge *e,
+                   const int *next, int k, double *out) {
   const rim_edge *own = e + k / 2;
   const unsigned char *held = r->body.d.fixed + 3 * own->v[k % 2];
   int at = k;
@@ -399,6 +428,10 @@ static void out_at(const run *r, const rim_edge *e, const int *next, int k,
     at = next[at];
   } while (at != k);
   smooth_mirror(3, held, own->out, out);
+  double face[3], normal[3];
+  mesh_face_normal(r->msh, own->face, face);
+  smooth_normal(r, rings, own->v[k % 2], face, normal);
+  add_scaled(3, -dot(3, out, normal), normal, out);
   goal_make_unit(3, out);
 }
 
@@ -421,7 +454,8 @@ static void add_beyond_edge(const run *r, const load *l, const rim_edge *e,
           (l->kind == LOAD_PRESSURE ? -normal[c] : c == l->component);
 }
 
-static status add_rim(const run *r, const load *l, double *dF) {
+static status add_rim(const run *r, const smooth_faces *rings, const load *l,
+                      double *dF) {
   const mesh *m = r->msh;
   OWNED int *next = NULL, *last = NULL;
   int n;
@@ -435,7 +469,7 @@ static status add_rim(const run *r, const load *l, double *dF) {
   }
   for (int i = 0; i < n; ++i) {
     double out[2][3];
-    for (int k = 0; k < 2; ++k) out_at(r, e, next, 2 * i + k, out[k]);
+    for (int k = 0; k < 2; ++k) out_at(r, rings, e, next, 2 * i + k, out[k]);
     for (int c = 0; c < 3; ++c) out[1][c] -= out[0][c];
     add_beyond_edge(r, l, e + i, out[1], dF);
   }
@@ -487,7 +521,7 @@ static status add_loads(const run *r, const smooth_faces *rings, double *dF) {
                                : element_patch(r, g->item_id[k]);
       add_load(r, l, &p, dF);
     }
-    if (on_faces && r->msh->dim == 3) PASS(add_rim(r, l, dF));
+    if (on_faces && r->msh->dim == 3) PASS(add_rim(r, rings, l, dF));
   }
   return OK;
 }
@@ -515,10 +549,11 @@ static double slope_of(const mesh *m, int elem, const double *u, int component,
   return sum;
 }
 
-/* Sides between two regions: m with these faces alone, of the lower region, as
- * if they were free; back[n_face] the elements behind, new. */
-static status between_regions(const mesh *m, const space_recovery *of,
-                              mesh *out, int **back) {
+/* Sides between elements of several parts: m with these faces alone, of the
+ * lower part[n_elem], as if they were free; back[n_face] the elements behind,
+ * new. */
+static status between_parts(const mesh *m, const int *part, mesh *out,
+                            int **back) {
   const int dim = m->dim, n = (dim + 1) * m->n_elem;
   OWNED size_t *start = NULL;
   OWNED int *elem = NULL;
@@ -534,9 +569,7 @@ static status between_regions(const mesh *m, const space_recovery *of,
       int met = 0;
       for (int i = 0; i < dim * (dim + 1); ++i)
         met += m->elem[(dim + 1) * elem[k] + i / dim] == v[i % dim];
-      if (met < dim ||
-          space_region(of, elem[k]) <= space_region(of, side / (dim + 1)))
-        continue;
+      if (met < dim || part[elem[k]] <= part[side / (dim + 1)]) continue;
       (*back)[out->n_face] = elem[k];
       out->face_other[out->n_face] = -1;
       out->face_elem[out->n_face++] = side / (dim + 1);
@@ -623,10 +656,11 @@ status goal_add_interfaces(const run *r, const space_recovery *of, double *dF,
   mesh sides;
   int *back;
   if (space_regions(of) < 2) return OK;
-  PASS_NEW_ALL(OF(to->volume, r->msh->n_elem),
+  PASS_NEW_ALL(OF(to->volume, r->msh->n_elem), OF(to->region, r->msh->n_elem),
                OF(to->strain, (size_t)r->m->ns * r->msh->n_elem));
+  for (int e = 0; e < r->msh->n_elem; ++e) to->region[e] = space_region(of, e);
   SCRATCH;
-  PASS(between_regions(r->msh, of, &sides, &back));
+  PASS(between_parts(r->msh, to->region, &sides, &back));
   seen.msh = &sides;
   OWNED_PARTS(smooth_faces, rings, smooth_faces_new(&sides, &rings));
   for (int f = 0; f < sides.n_face; ++f) {
@@ -636,16 +670,35 @@ status goal_add_interfaces(const run *r, const space_recovery *of, double *dF,
   return OK;
 }
 
+status goal_volumes_of(const run *r, const mesh_group *g, const int *region,
+                       double *volume) {
+  run seen = *r;
+  mesh sides;
+  int *back;
+  SCRATCH;
+  OWNED_NEW(int, part, r->msh->n_elem);
+  for (int k = 0; k < g->n_item; ++k) part[g->item_id[k]] = -1;
+  PASS(between_parts(r->msh, part, &sides, &back));
+  seen.msh = &sides;
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(&sides, &rings));
+  for (int f = 0; f < sides.n_face; ++f) {
+    const int e = sides.face_elem[f];
+    const patch p = face_patch(&seen, &rings, f);
+    if (region == NULL || region[e] == region[back[f]])
+      volume[e] += volume_beyond(r, &p);
+  }
+  return OK;
+}
+
 /* ---- means --------------------------------------------------------------- */
 
 /* The integral of u less its mean over the surface less that over a face; of a
  * volume, over what is beyond it. */
-static double beyond_face(const run *r, const patch *p, int face,
-                          const goal_mean *w, double mean) {
+static double beyond_face(const run *r, const patch *p, const goal_mean *w,
+                          double mean) {
   const mesh *m = r->msh;
   const int of_faces = m->group[w->group_id].dim < m->dim;
-  const double rise =
-      slope_of(m, m->face_elem[face], r->now.u, w->component, p->normal);
+  const double rise = slope_of(m, p->elem, r->now.u, w->component, p->normal);
   double sum = 0.0;
   for (int k = 0; k < p->n; ++k) {
     const spot s = spot_at(m, p, k);
@@ -653,7 +706,7 @@ static double beyond_face(const run *r, const patch *p, int face,
     for (int i = 0; i < p->n; ++i)
       u += s.b[i] * r->now.u[m->dim * p->node[i] + w->component];
     const double more =
-        sqrt(1.0 + dot(m->dim, s.slope, s.slope)) * turn_of(r, s.on[0]) -
+        sqrt(dot(m->dim, s.area, s.area)) * turn_of(r, s.on[0]) -
         turn_of(r, s.x[0]);
     sum +=
         s.weight * (of_faces ? u * more + s.beyond * rise * turn_of(r, s.x[0])
@@ -662,19 +715,63 @@ static double beyond_face(const run *r, const patch *p, int face,
   return sum;
 }
 
+/* Of the curved faces in[], or all. */
+static status beyond_faces(const run *r, const unsigned char *in,
+                           const goal_mean *w, double mean, double *sum) {
+  const mesh *m = r->msh;
+  const int of_faces = m->group[w->group_id].dim < m->dim;
+  *sum = 0.0;
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(m, &rings));
+  for (int f = 0; f < m->n_face; ++f) {
+    if (m->face_other[f] >= 0 ||
+        (in != NULL && !in[of_faces ? f : m->face_elem[f]]))
+      continue;
+    const patch p = face_patch(r, &rings, f);
+    if (p.is_curved) *sum += w->factor * beyond_face(r, &p, w, mean);
+  }
+  return OK;
+}
+
+/* m with the faces of a group between two elements alone, of each of both, as
+ * if they were free. */
+static status inner_faces(const mesh *m, const mesh_group *g, mesh *out) {
+  const int dim = m->dim, n = 2 * g->n_item;
+  *out = *m;
+  out->n_face = 0;
+  PASS_NEW_ALL(OF(out->face, dim * n), OF(out->face_elem, n),
+               OF(out->face_other, n));
+  for (int k = 0; k < n; ++k) {
+    const int f = g->item_id[k / 2], to = out->n_face;
+    if (m->face_other[f] < 0) continue;
+    COPY(out->face + dim * to, m->face + dim * f, dim);
+    for (int i = 0; i < 2 && k % 2 == 1; ++i)
+      out->face[dim * to + i] = m->face[dim * f + 1 - i];
+    out->face_other[to] = -1;
+    out->face_elem[to] = k % 2 == 0 ? m->face_elem[f] : m->face_other[f];
+    ++out->n_face;
+  }
+  return OK;
+}
+
 status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
                         double *sum) {
   const mesh *m = r->msh;
   const mesh_group *g = &m->group[w->group_id];
-  *sum = 0.0;
-  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(m, &rings));
+  const int of_faces = g->dim < m->dim;
+  run seen = *r;
+  mesh sides;
+  int *back;
+  double inside;
+  SCRATCH;
   OWNED_NEW(unsigned char, in, m->n_face + m->n_elem);
+  OWNED_NEW(int, part, m->n_elem);
   for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
-  for (int f = 0; f < m->n_face; ++f) {
-    if (m->face_other[f] >= 0 || !in[g->dim < m->dim ? f : m->face_elem[f]])
-      continue;
-    const patch p = face_patch(r, &rings, f);
-    if (p.is_curved) *sum += w->factor * beyond_face(r, &p, f, w, mean);
-  }
+  PASS(beyond_faces(r, in, w, mean, sum));
+  for (int e = 0; e < m->n_elem; ++e) part[e] = -in[e];
+  PASS(of_faces ? inner_faces(m, g, &sides)
+                : between_parts(m, part, &sides, &back));
+  seen.msh = &sides;
+  PASS(beyond_faces(&seen, NULL, w, mean, &inside));
+  *sum += of_faces ? 0.5 * inside : inside;
   return OK;
 }

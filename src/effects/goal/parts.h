@@ -17,6 +17,7 @@ typedef struct goal_mean {
 /* What forms share; NULL: zero. */
 typedef struct goal_shared {
   double *rest;   /* [3*n_elem] of goal_add_thermal */
+  int *region;    /* [n_elem] space_region */
   double *volume; /* [n_elem] what interfaces beyond their chords give to an
                      element, m3 */
   double *strain; /* [ns*n_elem] of J that is an integral of stress : strain,
@@ -93,7 +94,8 @@ status goal_places(const run *r, int **where);
 /* Adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);
 /* The same of curved interfaces between regions, of which the chord moves a
- * part from one to the other; to->volume, strain: NULL if there is one region.
+ * part from one to the other; to->region, volume, strain: NULL if there is one
+ * region.
  * ERR_MEMORY. */
 status goal_add_interfaces(const run *r, const space_recovery *of, double *dF,
                            goal_shared *to);
@@ -101,6 +103,9 @@ int goal_load_varies(const load *l); /* 1: from place to place */
 /* volume[n_elem] += what of the body is beyond the faces of each element, m3.
  * ERR_MEMORY. */
 status goal_volumes_beyond(const run *r, double *volume);
+/* The same of sides of a group of elements to others of their region. */
+status goal_volumes_of(const run *r, const mesh_group *g, const int *region,
+                       double *volume);
 /* What a mean, without its sign, has by the surface beyond the faces. */
 status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
                         double *sum);

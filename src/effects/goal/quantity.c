@@ -213,16 +213,21 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   const size_t ns = d->ns, c = g->component - GOAL_TENSOR;
   double whole = 0.0;
   OWNED_NEW(double, beyond, r->msh->n_elem);
+  OWNED_NEW(double, all, ns * r->msh->n_elem);
+  domain strained = *d;
+  strained.eigen = NULL;
+  domain_stress(&strained, r->now.u, NULL, all);
   PASS(find_beyond(r, f, beyond));
+  PASS(goal_volumes_of(r, of, f->of_all.region, beyond));
   for (int k = 0; k < of->n_item; ++k)
     whole += element_weight(d, of->item_id[k]);
   for (int k = 0; k < of->n_item; ++k) {
     const size_t e = of->item_id[k];
     const double *E = d->E + ns * ns * d->section_id[e];
-    const double part =
-        element_weight(d, (int)e) / whole * r->result.stress[ns * e + c];
-    f->value += part;
-    f->size += fabs(part);
+    const double share = element_weight(d, (int)e) / whole;
+    f->value += share * r->result.stress[ns * e + c];
+    f->size +=
+        share * fmax(fabs(r->result.stress[ns * e + c]), fabs(all[ns * e + c]));
     for (size_t i = 0; i < ns; ++i) f->tau[ns * e + i] = E[ns * i + c] / whole;
   }
   for (int k = 0; k < of->n_item; ++k) {

@@ -126,11 +126,18 @@ static int is_bent(int n, double angle, double whole) {
   return n > 2 || fabs(angle - 0.5 * whole) > 2.0 * SLACK;
 }
 
-/* 1: the border at a node turns inwards, or inside the interface of two regions
- * turns. */
-static int is_hollow(double angle, const joint *j) {
-  if (angle < 2.0 * M_PI - TURN) return angle > M_PI + TURN;
-  return j->n == 2 && fabs(j->angle - M_PI) > TURN;
+/* GOAL_HOLLOW, and whether edges are few, where the border turns inwards by
+ * this angle, rad. */
+static unsigned char hollow_bits(double turn) {
+  static const double FEW = M_PI / 12.0;
+  if (!(turn > TURN)) return 0;
+  return turn > FEW ? GOAL_HOLLOW | GOAL_FEW_EDGES : GOAL_HOLLOW;
+}
+
+/* The same at a node; inside, where the interface of two regions turns. */
+static unsigned char hollow_at(double angle, const joint *j) {
+  if (angle < 2.0 * M_PI - TURN) return hollow_bits(angle - M_PI);
+  return j->n == 2 ? hollow_bits(fabs(j->angle - M_PI)) : 0;
 }
 
 /* ---- where they end, in the plane ---------------------------------------- */
@@ -315,21 +322,27 @@ static void add_side(const run *r, const goal_surface *s, const int *v,
   }
 }
 
-/* 1: stresses are infinite along an edge of "count" faces. */
-static int is_singular_edge(const mesh *m, const rim *e, int count) {
-  if (count != 2) return count > 2;
+/* The body at an edge of two faces, rad. */
+static double angle_of(const mesh *m, const rim *e) {
   double across = 0.0;
   for (int c = 0; c < 3; ++c)
     across += e[0].n[c] * (m->x[3 * e[1].other + c] - m->x[3 * e[0].a + c]);
   const double turn = acos(fmax(-1.0, fmin(1.0, dot(3, e[0].n, e[1].n))));
-  corner at = {.angle = M_PI + (across > 0.0 ? turn : -turn), .n = 2};
+  return M_PI + (across > 0.0 ? turn : -turn);
+}
+
+/* 1: stresses are infinite along an edge of "count" faces. */
+static int is_singular_edge(const mesh *m, const rim *e, int count) {
+  if (count != 2) return count > 2;
+  corner at = {.angle = angle_of(m, e), .n = 2};
   for (int k = 0; k < 2; ++k) {
     at.of[k] = e[k].of;
     if (e[k].support) at.support = 1;
     if (!e[k].support && e[k].of != FREE) at.contact = 1;
   }
   if (e[0].region != e[1].region)
-    return at.of[0] != ROLLER || at.of[1] != ROLLER || turn > SLACK;
+    return at.of[0] != ROLLER || at.of[1] != ROLLER ||
+           fabs(at.angle - M_PI) > SLACK;
   for (int k = 0; k < 2; ++k) {
     const side_load *const pull[2] = {e[0].pull[k], e[1].pull[k]};
     if (is_torn(3, &at, pull, e[0].n, e[1].n)) return 1;
@@ -342,9 +355,11 @@ static void mark_edges(const mesh *m, rim *e, int n, goal_surface *s) {
   for (int i = 0, last; i < n; i = last) {
     last = PAIR_END(e, n, i);
     if (s->front != NULL && s->front[e[i].a] && s->front[e[i].b]) continue;
-    if (!is_singular_edge(m, e + i, last - i)) continue;
-    s->ends[e[i].a] |= GOAL_END_OF_SUPPORT;
-    s->ends[e[i].b] |= GOAL_END_OF_SUPPORT;
+    unsigned char bits = 0;
+    if (is_singular_edge(m, e + i, last - i)) bits = GOAL_END_OF_SUPPORT;
+    if (last == i + 2) bits |= hollow_bits(angle_of(m, e + i) - M_PI);
+    s->ends[e[i].a] |= bits;
+    s->ends[e[i].b] |= bits;
   }
 }
 
@@ -456,7 +471,7 @@ static status mark_plane(const run *r, const goal_border *border,
          is_singular_joint(&c[i], &at[i])))
       s->ends[i] |= GOAL_END_OF_SUPPORT;
   for (int i = 0; i < m->n_node; ++i)
-    if (is_hollow(border->angle[i], &at[i])) s->ends[i] |= GOAL_HOLLOW;
+    s->ends[i] |= hollow_at(border->angle[i], &at[i]);
   return OK;
 }
 
