@@ -59,8 +59,9 @@ LDLIBS   += -lumfpack -lcholmod -lcamd -lsuitesparseconfig -llapacke -lopenblas 
             $(if $(archive),$(archive) -lsz -lz,$(hdf5)) -ldl -lm
 # The program itself starts in a third of the time where the dynamic loader has
 # little to do: it takes archives, or the above where one of them is missing.
-# Of the library of Fortran they need one call, which base/text.c has.
-static   := -Wl$(comma)--start-group \
+# Of the library of Fortran they need one call, which base/text.c has. At a fixed
+# address there is nothing to relocate.
+static   := -no-pie -Wl$(comma)--start-group \
             $(patsubst %,-l:lib%.a,umfpack cholmod amd camd colamd ccolamd \
               suitesparseconfig lapacke openblas sz aec z) $(archive) \
             -Wl$(comma)--end-group -l:libmetis.so.5 -lgomp -ldl -lm

@@ -17,16 +17,20 @@ static int depth;
 static int whole; /* depth of the stage that all others are part of; 0: none */
 static int inner; /* stages entered inside it */
 static double last_cpu;
+static double child_cpu; /* of ended children */
 static size_t last_bytes;
 
 double timer_cpu(void) {
   struct timespec now;
-  struct rusage child = {0};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return child_cpu + (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void timer_child_ended(void) {
+  struct rusage child = {0};
   getrusage(RUSAGE_CHILDREN, &child);
-  return (double)(now.tv_sec + child.ru_utime.tv_sec + child.ru_stime.tv_sec) +
-         1e-9 * (double)now.tv_nsec +
-         1e-6 * (double)(child.ru_utime.tv_usec + child.ru_stime.tv_usec);
+  child_cpu = (double)(child.ru_utime.tv_sec + child.ru_stime.tv_sec) +
+              1e-6 * (double)(child.ru_utime.tv_usec + child.ru_stime.tv_usec);
 }
 
 /* Charge what was spent since the last change to the innermost stage. */

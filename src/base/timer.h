@@ -87,7 +87,8 @@ stage_cost timer_cost(stage s);  /* so far, running stages included */
 const char *timer_name(stage s); /* NULL: one that has not been named */
 /* Stage number k, from 0, of those that are not listed; name is borrowed. */
 stage timer_own_stage(int k, const char *name);
-double timer_cpu(void); /* of the process and its ended children, s */
+double timer_cpu(void);       /* of the process and its ended children, s */
+void timer_child_ended(void); /* after each of them */
 void timer_reset(void);
 /* The process continues the run of another one, which had spent this: its calls
  * are those of the whole from here on, the rest is added. */

@@ -256,6 +256,7 @@ status raw_read(const raw_request *request, raw_mesh **out) {
   pid_t r;
   do r = waitpid(pid, &code, 0);
   while (r < 0 && errno == EINTR);
+  timer_child_ended();
   int ended = r == pid;
   return stopped ? child_failure(ended, code, error[0]) : st;
 }

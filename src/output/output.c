@@ -309,11 +309,14 @@ static status remove_old(const output *o, const char *suffix) {
   return file_clear(path);
 }
 
-/* length: of the file to continue; -1: a new one. */
+/* length: of the file to continue; -1: a new one. Iterations are seen as they
+ * end, else what belongs together. */
 static status open_text(const output *o, const char *suffix, long length,
                         text_file *t) {
+  const int by_line = t == &o->cvg;
   OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, suffix));
-  return length < 0 ? text_open(t, path, 1) : text_reopen(t, path, 1, length);
+  return length < 0 ? text_open(t, path, by_line)
+                    : text_reopen(t, path, by_line, length);
 }
 
 static status open_hdf5(output *o, const hdf5_count *before) {

@@ -6,6 +6,8 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 /* A block of one material, pressed with 50 MPa from above in a *VISCO step. */
 typedef struct scene {
   const char *material; /* cards below *MATERIAL                              */

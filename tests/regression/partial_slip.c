@@ -88,7 +88,7 @@ static double lubkin_torque(double c) {
 TEST(torsion_gives_its_torque) {
   const double stick = 0.75, mu = 0.6;
   ck_assert_double_eq_tol(lubkin_torque(1e-9), 3 * acos(-1.0) / 16, 1e-6);
-  PRINTED(words, "-D KE=%.12g -D MU=%g -D DT=0.2 -D NC=7", elliptic(stick), mu);
+  PRINTED(words, "-D KE=%.12g -D MU=%g -D DT=0.2 -D NC=6", elliptic(stick), mu);
   JOB j = job_deck("input/torsion_sphere_3d/torsion_sphere_3d", words);
   DAT t = job_table(&j, "TOTALS", -1), l = job_table(&j, "LOOP", -1);
   double P = dat_at(&t, 0, "normal"), Es = young / 0.91, G = young / 2.6;

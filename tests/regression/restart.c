@@ -1,7 +1,8 @@
 /*
  * A run that is interrupted or killed and then gone on with, against the run
  * that was not: all files equal, byte by byte. The points of interruption are
- * counted in writes (the run is traced), so that nothing depends on time.
+ * counted in increments or writes (the run is traced), so that nothing depends
+ * on time.
  */
 #include "support/folder.h"
 #include "support/small_job.h"
@@ -23,6 +24,23 @@ static int run_until(job *j, const char *const *words, int at, int signal_no,
   *changes = t.changes;
   return code;
 }
+
+/* Interrupted when that line of JOB.sta is written, of which each attempt at an
+ * increment has one. */
+static void stop_at(job *j, int line) {
+  enum { BEFORE = 4 }; /* removed twice, opened, its heading written */
+  traced t = {.action = TRACE_SIGNAL,
+              .at = BEFORE + line,
+              .number = SIGINT,
+              .of = ".sta"};
+  CK_EXIT(traced_run(j, nothing, &t), 130, *j);
+  FREED char *sta = job_file(j, "sta");
+  for (const char *at = sta; (at = strchr(at, '\n')) != NULL; ++at) --line;
+  ck_assert_int_eq(line, -1); /* it has a heading */
+}
+
+/* Not interrupted. */
+static void run_whole(job *j) { CK_EXIT(traced_run(j, nothing, NULL), 0, *j); }
 
 /* All files of the results are equal, byte by byte. */
 static void same_files(const job *a, const job *b, const char *what) {
@@ -76,18 +94,15 @@ static int same_bytes(const job *a, const job *b, const char *suffix) {
   return system(line) == 0;
 }
 
-/* A block whose run is stopped at so many tenths. */
-static job stopped_at(int tenths) {
-  int changes, all;
+/* A block whose run is stopped after so many increments. */
+static job stopped_at(int line) {
   job j = small_flat(0.4, "", "AUTO");
-  run_until(&j, nothing, 0, 0, &all);
-  ck_assert_int_eq(run_until(&j, nothing, all * tenths / 10, SIGINT, &changes),
-                   130);
+  stop_at(&j, line);
   return j;
 }
 
 TEST(changed_decks_are_refused_by_card) {
-  JOB j = stopped_at(4);
+  JOB j = stopped_at(2);
   edit(&j, "130.D3", "131.D3");
   refused(&j, 2, "changed: *ELASTIC, TYPE=ISO has other data; only");
   edit(&j, "131.D3", "130.D3");
@@ -117,7 +132,7 @@ TEST(changed_decks_are_refused_by_card) {
 /* Output and solver of a step to come, requests for restart files anywhere; of
  * the step in progress they may not change, nor may effects come or go. */
 TEST(later_steps_may_change) {
-  JOB j = stopped_at(3);
+  JOB j = stopped_at(1);
   edit(&j, "*PRINT, CONTACT, LOOP", "*PRINT, CONTACT");
   refused(&j, 2, "step 1, *PRINT");
   edit(&j, "*PRINT, CONTACT", "*PRINT, CONTACT, LOOP");
@@ -141,7 +156,6 @@ TEST(later_steps_may_change) {
 /* Adapted increments come back to lengths of before but for the rounding of the
  * times; a run that goes on takes them for the same ones too. */
 TEST(adapted_increments_go_on) {
-  int changes, all;
   const char *words = "INTEGRATOR=MIDPOINT, TOLERANCE=1E-4";
   job both[2];
   for (int k = 0; k < 2; ++k) {
@@ -149,9 +163,8 @@ TEST(adapted_increments_go_on) {
     edit(&both[k], "MAXWELL\n4.\n", "NORTON\n1E-8, 3.\n");
     edit(&both[k], "0.5, 4.\n*ACCURACY, TIME=YES\n", "0.1, 2.\n");
   }
-  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
-  ck_assert_int_eq(run_until(&both[1], nothing, all / 4, SIGINT, &changes),
-                   130);
+  run_whole(&both[0]);
+  stop_at(&both[1], 14);
   goes_on(&both[1], 0, words);
   same_files(&both[0], &both[1], words);
   for (int k = 0; k < 2; ++k) job_end(&both[k]);
@@ -167,18 +180,17 @@ static job yielding(void) {
 
 /* Stopped after the first attempt that was not stable: the next is cut. */
 TEST(unstable_attempt_is_not_made_twice) {
-  int from = 0, to, changes;
+  int line = 0;
   JOB whole = yielding(), j = yielding();
-  ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &to), 0);
-  while (to - from > 1) {
-    const int at = (from + to) / 2;
-    job_clear(&j);
-    ck_assert_int_eq(run_until(&j, nothing, at, SIGINT, &changes), 130);
-    FREED char *sta = job_file(&j, "sta");
-    *(strstr(sta, "CUT UNSTABLE") != NULL ? &to : &from) = at;
-  }
-  job_clear(&j);
-  ck_assert_int_eq(run_until(&j, nothing, to, SIGINT, &changes), 130);
+  run_whole(&whole);
+  FREED char *sta = job_file(&whole, "sta");
+  const char *cut = strstr(sta, "CUT UNSTABLE");
+  ck_assert_ptr_nonnull(cut);
+  while (cut > sta) line += *--cut == '\n';
+  stop_at(&j, line);
+  FREED char *stopped = job_file(&j, "sta");
+  ck_assert(strncmp(stopped, sta, strlen(stopped)) == 0);
+  ck_assert_ptr_nonnull(strstr(stopped, "CUT UNSTABLE"));
   goes_on(&j, 0, "yielding");
   same_files(&whole, &j, "yielding");
 }
@@ -194,13 +206,12 @@ static job adapted_factors(void) {
 
 /* So do the rows that the factors of their matrices follow. */
 TEST(factors_of_adapted_increments_go_on) {
-  int changes, all;
+  static const int stops[] = {1, 7, 9};
   JOB one = adapted_factors();
-  ck_assert_int_eq(run_until(&one, nothing, 0, 0, &all), 0);
-  for (int k = 1; k <= 3; ++k) {
+  run_whole(&one);
+  for (int k = 0; k < 3; ++k) {
     JOB j = adapted_factors();
-    ck_assert_int_eq(run_until(&j, nothing, all * k / 8, SIGINT, &changes),
-                     130);
+    stop_at(&j, stops[k]);
     goes_on(&j, 0, "adapted");
     same_files(&one, &j, "adapted");
   }
@@ -216,13 +227,12 @@ static job falling(void) {
 
 /* The path beside the run goes on with the tolerance that was chosen last. */
 TEST(chosen_tolerance_goes_on) {
-  int changes, all;
+  static const int stops[] = {1, 2, 5};
   JOB whole = falling();
-  ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
-  for (int k = 1; k < 4; ++k) {
+  run_whole(&whole);
+  for (int k = 0; k < 3; ++k) {
     JOB j = falling();
-    ck_assert_int_eq(run_until(&j, nothing, all * k / 5, SIGINT, &changes),
-                     130);
+    stop_at(&j, stops[k]);
     goes_on(&j, 0, "falling");
     same_files(&whole, &j, "falling");
   }
@@ -230,16 +240,14 @@ TEST(chosen_tolerance_goes_on) {
 
 /* The path beside the run goes on with the motion of the obstacle there. */
 TEST(path_on_a_moving_obstacle_goes_on) {
-  int changes, all;
   job both[2];
   for (int k = 0; k < 2; ++k) {
     both[k] = small_flat(0.4, "", "SOR\n*ACCURACY, TIME=YES");
     edit(&both[k], "TYPE=CONFORMING",
          "TYPE=PLANE\n0., 0.\n0., 1.\nMOVE, \"1e-3*t^2\", 0.");
   }
-  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
-  ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
-                   130);
+  run_whole(&both[0]);
+  stop_at(&both[1], 3);
   goes_on(&both[1], 0, "moving");
   same_files(&both[0], &both[1], "moving");
   for (int k = 0; k < 2; ++k) job_end(&both[k]);
@@ -269,17 +277,14 @@ TEST(paths_of_steps_go_on) {
       {"80.", ""},
       {"\"10*t^3\"", "*DSLOAD\nTOP, P, 0.\nLEFT, P, 0.\n"},
       {"\"80+sin(50*t)\"", "*DSLOAD\nTOP, P, 80.\n"}};
-  static const int stops[][3] = {{20, 25, 28}, {18, 20}, {20}};
+  static const int stops[][3] = {{5, 7, 8}, {8, 9}, {9}};
   for (int i = 0; i < 3; ++i) {
-    int changes, all;
     JOB whole = stepwise(i == 1 ? 0.0 : 0.1, loads[i]);
-    ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
+    run_whole(&whole);
     ck_assert_int_eq(isnan(job_told(&whole, "time_error_percent")), i == 2);
     for (int k = 0; k < 3 && stops[i][k] > 0; ++k) {
       JOB j = stepwise(i == 1 ? 0.0 : 0.1, loads[i]);
-      ck_assert_int_eq(
-          run_until(&j, nothing, all * stops[i][k] / 36, SIGINT, &changes),
-          130);
+      stop_at(&j, stops[i][k]);
       goes_on(&j, 0, loads[i][0]);
       same_files(&whole, &j, "steps");
     }
@@ -295,15 +300,13 @@ TEST(errors_of_goals_go_on) {
       "*WEAR, CONTACT=C, COEFFICIENT=1e-9\n*STEP"};
   static const char *const tables[] = {"*PRINT, GOALS\n", "*PRINT, WEAR\n"};
   for (int i = 0; i < 2; ++i) {
-    int changes, all;
     job both[2];
     for (int k = 0; k < 2; ++k) {
       both[k] = small_flat(0.25, tables[i], "NEWTON, CHECK=YES");
       edit(&both[k], "*STEP", cards[i]);
     }
-    ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
-    ck_assert_int_eq(
-        run_until(&both[1], nothing, 2 * all / 3, SIGINT, &changes), 130);
+    run_whole(&both[0]);
+    stop_at(&both[1], 6);
     goes_on(&both[1], 0, cards[i]);
     same_files(&both[0], &both[1], cards[i]);
     for (int k = 0; k < 2; ++k) job_end(&both[k]);
@@ -315,13 +318,11 @@ TEST(factor_goes_on) {
   static const char *const methods[] = {"AUTO", "AUGLAG", "PROXIMAL", "PCG",
                                         "LAGRANGE"};
   for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
-    int changes, all;
     job both[2];
     PRINTED(choice, "%s, STIFFNESS=FACTOR", methods[m]);
     for (int k = 0; k < 2; ++k) both[k] = small_flat(0.4, "", choice);
-    ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
-    ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
-                     130);
+    run_whole(&both[0]);
+    stop_at(&both[1], 3);
     goes_on(&both[1], 0, methods[m]);
     same_files(&both[0], &both[1], methods[m]);
     for (int k = 0; k < 2; ++k) job_end(&both[k]);
@@ -364,12 +365,10 @@ static job strip(int cells, const char *const solver[2],
 static void check_kinds(int cells, const char *const solver[2],
                         const char *const supports[2],
                         const char *const chosen[2]) {
-  int changes, all;
   job both[2];
   for (int k = 0; k < 2; ++k) both[k] = strip(cells, solver, supports, "", "");
-  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
-  ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
-                   130);
+  run_whole(&both[0]);
+  stop_at(&both[1], 7);
   FREED char *listing = job_file(&both[0], "lst");
   const char *first = strstr(listing, chosen[0]);
   ck_assert_ptr_nonnull(first);
@@ -393,15 +392,13 @@ TEST(kind_of_stiffness_goes_on) {
 /* Tangents of the points that are those of the last solve, as nothing flows:
  * the factor of Newton, which the next contact changes in a few rows, too. */
 TEST(factor_of_tangents_goes_on) {
-  int changes, all;
   job both[2];
   static const char *const none[] = {"", ""};
   for (int k = 0; k < 2; ++k)
     both[k] = strip(40, none, none, "*INELASTIC, LAW=PERZYNA\n1e6, 50.\n",
                     ", INTEGRATOR=BACKWARD");
-  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
-  ck_assert_int_eq(run_until(&both[1], nothing, 2 * all / 3, SIGINT, &changes),
-                   130);
+  run_whole(&both[0]);
+  stop_at(&both[1], 11);
   goes_on(&both[1], 0, "tangents");
   same_files(&both[0], &both[1], "tangents");
   for (int k = 0; k < 2; ++k) job_end(&both[k]);
@@ -434,17 +431,15 @@ static job light(void) {
 }
 
 TEST(largest_loads_and_energies_go_on) {
-  static const int stops[] = {6, 8, 10, 12, 45};
-  int changes, all;
+  static const int stops[] = {1, 2, 12};
   JOB whole = light();
-  int code = run_until(&whole, nothing, 0, 0, &all);
+  int code = traced_run(&whole, nothing, NULL);
   ck_assert_int_le(code, 1); /* the first forces are told to be in doubt     */
   FREED char *lst = job_file(&whole, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "\n  rounding: "));
-  for (int k = 0; k < 5; ++k) {
+  for (int k = 0; k < 3; ++k) {
     JOB j = light();
-    ck_assert_int_eq(
-        run_until(&j, nothing, all * stops[k] / 60, SIGINT, &changes), 130);
+    stop_at(&j, stops[k]);
     goes_on(&j, code, "light");
     same_files(&whole, &j, "light");
   }
@@ -472,13 +467,11 @@ TEST(known_rate_goes_on) {
       {"130.D3, 0.2\n*INELASTIC, LAW=BINGHAM\n1E6, 1.\n",
        "*END STEP\n*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"}};
   for (int i = 0; i < 2; ++i) {
-    int changes, all;
     JOB whole = sliding(body[i][0], body[i][1]);
-    ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
-    for (int k = 6; k < 8; ++k) {
+    run_whole(&whole);
+    for (int line = 5; line < 8; line += 2) {
       JOB j = sliding(body[i][0], body[i][1]);
-      ck_assert_int_eq(run_until(&j, nothing, all * k / 10, SIGINT, &changes),
-                       130);
+      stop_at(&j, line);
       goes_on(&j, 0, body[i][1]);
       same_files(&whole, &j, body[i][1]);
     }
@@ -505,7 +498,7 @@ TEST(run_without_a_file_begins_anew) {
   int changes;
   JOB whole = small_flat(0.4, "*RESTART\n", "AUTO");
   JOB j = small_flat(0.4, "*RESTART\n", "AUTO");
-  ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &changes), 0);
+  run_whole(&whole);
   ck_assert_int_eq(run_until(&j, nothing, 9, SIGTERM, &changes), 143);
   ck_assert(!job_has(&j, "rst.h5"));
   goes_on(&j, 0, "from nothing");
@@ -518,7 +511,6 @@ TEST(run_without_a_file_begins_anew) {
  * one to come; the mesh, of a file that gmsh finds. */
 TEST(files_are_in_the_seal) {
   static const char *const names[] = {"first.msh", "second.msh"};
-  int changes, all;
   JOB j = small_flat(0.4, "*TEMPERATURE, FILE=first.msh\nBODY\n", "AUTO");
   edit(&j, "130.D3, 0.2", "130.D3, 0.2\n*EXPANSION\n1.E-5");
   edit(&j, "*BOUNDARY\nTOP, 1, 1, -0.01",
@@ -527,8 +519,7 @@ TEST(files_are_in_the_seal) {
   job_write(&j, "outer.geo", "Merge StrCat(\"greco\", \".geo\");\n");
   FREED char *block = file_read("input/greco/greco.geo", NULL);
   for (int k = 0; k < 2; ++k) write_field(&j, names[k], 20);
-  ck_assert_int_eq(run_until(&j, nothing, 0, 0, &all), 0);
-  ck_assert_int_eq(run_until(&j, nothing, all * 3 / 10, SIGINT, &changes), 130);
+  stop_at(&j, 1);
   write_field(&j, names[0], 21);
   refused(&j, 2, "*TEMPERATURE, FILE=first.msh");
   write_field(&j, names[0], 20);
@@ -621,25 +612,21 @@ TEST(what_is_read_is_written_again) {
   static const char second[] =
       "*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
       "*ACCURACY, TIME=YES, MESH=YES\n";
-  int all = 0, changes;
+  static const int stops[][2] = {{1, 5}, {2, 6}, {4, 10}, {2, 6}};
+  int changes;
   for (int scene = 0; scene < 4; ++scene)
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 2; ++k) {
       JOB j = scene == 0   ? small_flat(0.4, "", "AUTO")
               : scene == 1 ? small_creep(1.0, "", "INTEGRATOR=MIDPOINT")
               : scene == 2 ? light()
                            : sliding(changed, second);
-      if (k == 0) {
-        run_until(&j, nothing, 0, 0, &all);
-      } else {
-        const int at = all * (2 * k + 1) / 8;
-        ck_assert_int_eq(run_until(&j, nothing, at, SIGINT, &changes), 130);
-        hid_t first = kept_by(&j);
-        ck_assert_int_eq(run_until(&j, again, 9, SIGINT, &changes), 130);
-        hid_t then = kept_by(&j);
-        same_arrays(first, then, scene);
-        H5Fclose(first);
-        H5Fclose(then);
-      }
+      stop_at(&j, stops[scene][k]);
+      hid_t first = kept_by(&j);
+      ck_assert_int_eq(run_until(&j, again, 9, SIGINT, &changes), 130);
+      hid_t then = kept_by(&j);
+      same_arrays(first, then, scene);
+      H5Fclose(first);
+      H5Fclose(then);
     }
 }
 
@@ -660,7 +647,7 @@ TEST(missed_tolerance_goes_on) {
 }
 
 TEST(some_jobs_start_anew) {
-  JOB j = stopped_at(3);
+  JOB j = stopped_at(1);
   edit(&j, "TOP, 1, 1, -0.01\n", "TOP, 1, 1, -0.01\n*ACCURACY, THEORY=YES\n");
   refused(&j, 2, "theorems");
   edit(&j, "*ACCURACY, THEORY=YES", "*ACCURACY, TARGET=5.");

@@ -9,6 +9,8 @@
 #include "support/turned_mesh.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 static const double G = 500, area = 0.70710678118654752; /* half an edge */
 
 #define FLOOR                                       \

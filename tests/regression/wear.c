@@ -7,6 +7,8 @@
 
 #include <signal.h>
 
+const int job_without_fields = 1;
+
 /* A body pressed by 3 on a belt, E = 1000, nu = 0, 1 s at rest and 10 s at
  * "way"/10 a second; k = 1e-4. "cards" before the
  * steps. */

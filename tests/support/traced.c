@@ -74,12 +74,13 @@ static pid_t start(const job *j, const char *const *words, int followed) {
   _exit(99);
 }
 
-/* 1: a file of the folder, not one of the messages, nor of those that are
- * rewritten by time unless these count too. */
-static int counts(const job *j, const char *path, int timed) {
+/* 1: a file of the folder that is looked at, not one of the messages, nor of
+ * those that are rewritten by time unless these count too. */
+static int counts(const job *j, const char *path, const traced *t) {
   return strncmp(path, j->dir, strlen(j->dir)) == 0 &&
          strstr(path, "/stderr.txt") == NULL &&
-         (timed || strstr(path, ".xdmf") == NULL);
+         (t->timed || strstr(path, ".xdmf") == NULL) &&
+         (t->of == NULL || strstr(path, t->of) != NULL);
 }
 
 /* 1: the descriptor was opened for writing. */
@@ -102,22 +103,22 @@ enum { MOST_FILES = 256 };
 static place known[MOST_FILES];
 
 static int of_folder(const job *j, pid_t pid, unsigned long long fd,
-                     int timed) {
+                     const traced *t) {
   char link[64], path[PATH];
   if (fd < MOST_FILES && known[fd] != UNKNOWN) return known[fd] == WITHIN;
   snprintf(link, sizeof link, "/proc/%d/fd/%llu", (int)pid, fd);
   ssize_t n = readlink(link, path, sizeof path - 1);
   if (n < 0) return 0;
   path[n] = '\0';
-  const int within = counts(j, path, timed);
+  const int within = counts(j, path, t);
   if (fd < MOST_FILES) known[fd] = within ? WITHIN : ELSEWHERE;
   return within;
 }
 
 /* The descriptor ends: another file may have its number. */
 static int closes_file(const job *j, pid_t pid, unsigned long long fd,
-                       int timed) {
-  const int within = of_folder(j, pid, fd, timed);
+                       const traced *t) {
+  const int within = of_folder(j, pid, fd, t);
   if (fd < MOST_FILES) known[fd] = UNKNOWN;
   return within && is_writable(pid, fd);
 }
@@ -139,27 +140,27 @@ static int path_at(pid_t pid, unsigned long long address, char path[PATH]) {
 /* 1: that path is of the folder. A build that counts branches writes its counts
  * elsewhere. */
 static int names_folder(const job *j, pid_t pid, unsigned long long address,
-                        int timed) {
+                        const traced *t) {
   char path[PATH];
-  return path_at(pid, address, path) && counts(j, path, timed);
+  return path_at(pid, address, path) && counts(j, path, t);
 }
 
 static int changes_file(const job *j, pid_t pid,
-                        const struct user_regs_struct *r, int timed) {
+                        const struct user_regs_struct *r, const traced *t) {
   switch (r->orig_rax) {
     case SYS_write:
     case SYS_pwrite64:
     case SYS_fsync:
     case SYS_ftruncate:
-      return of_folder(j, pid, r->rdi, timed);
+      return of_folder(j, pid, r->rdi, t);
     case SYS_close:
-      return closes_file(j, pid, r->rdi, timed);
+      return closes_file(j, pid, r->rdi, t);
     case SYS_openat:
       return (r->rdx & O_ACCMODE) != O_RDONLY &&
-             names_folder(j, pid, r->rsi, timed);
+             names_folder(j, pid, r->rsi, t);
     case SYS_rename:
     case SYS_unlink:
-      return names_folder(j, pid, r->rdi, timed);
+      return names_folder(j, pid, r->rdi, t);
     default:
       return 0;
   }
@@ -199,7 +200,7 @@ static int meet(const job *j, pid_t pid, traced *t) {
   struct user_regs_struct r;
   ck_assert_int_eq(ptrace(PTRACE_GETREGS, pid, NULL, &r), 0);
   note_sync(j, pid, &r, t);
-  if (!changes_file(j, pid, &r, t->timed)) return 0;
+  if (!changes_file(j, pid, &r, t)) return 0;
   ++t->changes;
   if (t->changes != t->at && !(t->always && t->changes > t->at)) return 0;
   if (t->action == TRACE_SIGNAL)

@@ -19,9 +19,10 @@ typedef enum {
 
 typedef struct traced {
   trace_action action;
-  int at;       /* the change it happens at                                  */
-  int always;   /* 1: and at every later one                                 */
-  int timed;    /* 1: changes of JOB.xdmf count, which is rewritten by time  */
+  int at;     /* the change it happens at                                  */
+  int always; /* 1: and at every later one                                 */
+  int timed;  /* 1: changes of JOB.xdmf count, which is rewritten by time  */
+  const char *of; /* only those of files with this in their names; NULL: all */
   int number;   /* signal or errno                                           */
   int changes;  /* out: changes of files in all                             */
   int restarts; /* out: restart files that a new one replaced               */

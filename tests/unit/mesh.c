@@ -3,6 +3,9 @@
 #include "support/mesh_file.h"
 #include "support/unit.h"
 
+#include <sys/resource.h>
+#include <time.h>
+
 /* A disc of radius 1 glued into a square of side 4: two bodies, one mesh. */
 static const char disc_geo[] =
     "DefineConstant[ N = 3 ];\n"
@@ -205,6 +208,16 @@ TEST(all_formats_give_the_same_mesh_2d) { check_formats(disc_geo); }
 
 TEST(all_formats_give_the_same_mesh_3d) { check_formats(cubes_geo); }
 
+/* The process that meshes counts as the program's own. */
+static void check_time(void) {
+  struct rusage child;
+  const double own = (double)clock() / CLOCKS_PER_SEC;
+  ck_assert_int_eq(getrusage(RUSAGE_CHILDREN, &child), 0);
+  ck_assert_double_ge(
+      timer_cpu(),
+      own + 1e-6 * (double)(child.ru_utime.tv_usec + child.ru_stime.tv_usec));
+}
+
 TEST(meshing_twice_gives_the_same_bytes) {
   MESH_FILE f = mesh_file_open();
   const mesh_number n = {"N", 7.0, 0};
@@ -217,6 +230,7 @@ TEST(meshing_twice_gives_the_same_bytes) {
   ck_assert_mem_eq(a->elem_no, b->elem_no,
                    (size_t)a->n_elem * sizeof *a->elem_no);
   ck_assert_int_gt(a->n_node, coarse->n_node);
+  check_time();
 }
 
 /* Numbers of the deck: by name, to full precision, also if the .geo gives the
