@@ -347,6 +347,23 @@ TEST(friction_that_may_stop_is_not_reliable) {
   ck_assert(!goal_has_verdict(&j, "T", "reliable"));
 }
 
+/* With ZONE=CONTACT friction ends with the contact, within an edge, where it is
+ * 8.4/2. Its force is mu times the integral of R(p) over the contact, by
+ * quadrature of the pressures of 192 edges. */
+TEST(friction_that_ends_with_the_contact) {
+  JOB j = body_of_block(
+      18, "GAP\n\"(x-1)^2/20\"",
+      "*FRICTION, CONTACT=C, LAW=NONLOCAL, RADIUS=0.3, ZONE=CONTACT\n0.5\n"
+      "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+      "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.02\n"
+      "*END STEP\n*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 1, 0.05\n");
+  DAT t = job_table(&j, "GOALS", -1);
+  const double off = -10.969 - dat_at(&t, 0, "corrected");
+  ck_assert_double_gt(off, 0.3);
+  ck_assert_double_gt(dat_at(&t, 0, "band"), off);
+  ck_assert_double_lt(dat_at(&t, 0, "band"), 0.5 * 8.4 * 2.0 / 9.0);
+}
+
 /* Nodes that a support holds next to open ones that slide. */
 TEST(friction_of_held_nodes_next_to_open_ones) {
   JOB j =

@@ -195,14 +195,23 @@ static int may_stop(const run *r, const int *q, const double *rise) {
   return halts;
 }
 
+/* 1: friction ends with the contact, ZONE=CONTACT, between nodes q[2]. */
+static int leaves_zone(const run *r, const int *q) {
+  const friction_limit *limit = r->problem.limit;
+  const int open = r->result.contact[q[0]] == CONTACT_OPEN;
+  return limit != NULL && limit->in_zone != NULL && limit->in_zone[q[0]] &&
+         open != (r->result.contact[q[1]] == CONTACT_OPEN);
+}
+
 /* Of an edge within which friction turns back: the nodes have that in the
  * middle, and it may be at either end. So it may where the nodes stop: there
- * friction may be anything. */
+ * friction may be anything. Where it ends with the contact the nodes have half
+ * of it, and it may reach all along or not. */
 static double reversal_of(const run *r, const contact_edge *e, const int *q,
                           const double *rise, const double *z) {
   const int dim = r->msh->dim, turns = turns_back(r, q);
   double v[2][3], part = 0.0;
-  if (!turns && !may_stop(r, q, rise)) return 0.0;
+  if (!turns && !leaves_zone(r, q) && !may_stop(r, q, rise)) return 0.0;
   const double t[2] = {traction_of(r, q[0], 1, v[0]),
                        (turns ? -1.0 : 1.0) * traction_of(r, q[1], 1, v[1])};
   for (int c = 0; c < dim; ++c)
