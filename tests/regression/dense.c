@@ -3,6 +3,7 @@
  * integrator, what contact and friction do there, stiff laws, and that the run
  * itself stays as it is. E = 1000, nu = 0.3, relaxation time 2.
  */
+#include "support/block_file.h"
 #include "support/square_case.h"
 #include "support/unit.h"
 
@@ -124,6 +125,33 @@ static char *contact_table(const job *j, int k) {
   for (int i = 0; i < d.n_row * d.n_col; ++i) fprintf(f, "%.12g ", d.value[i]);
   fclose(f);
   return text;
+}
+
+/* Held parts of two materials relax each by its own time. */
+TEST(materials_keep_their_times_at_points) {
+  JOB j = job_begin("block");
+  block_file_write(&j, (int[]){1, 2}, (double[]){1.0, 2.0}, 1);
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=MAXWELL\n2.\n*MATERIAL, NAME=U\n*ELASTIC\n"
+            "1000., 0.3\n*INELASTIC, LAW=KELVIN\n1000., 500.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=U\n"
+            "*TIME POINTS, NAME=P\n0.5\n*STEP\n"
+            "*VISCO, INTEGRATOR=EXPONENTIAL\n1., 1.\n*BOUNDARY\n"
+            "CONTACT, 1, 2\nTOP, 1\nTOP, 2, 2, \"-0.002 + 0*t\"\nLEFT, 1\n"
+            "LEFT, 2, 2, \"-0.001*y + 0*t\"\nSYMMETRY, 1\n"
+            "SYMMETRY, 2, 2, \"-0.001*y + 0*t\"\n"
+            "*PRINT, ELEMENTS, TIME POINTS=P\n*END STEP\n");
+  CK_EXIT(job_run(&j, ""), 0, j);
+  DAT e = job_table(&j, "ELEMENTS", -1);
+  const double at_once = -1000 * 0.7 / 1.3 / 0.4 * 1e-3;
+  ck_assert_int_eq(e.n_row, 4);
+  for (int k = 0; k < 4; ++k) /* E/2 is left of the KELVIN unit, tau 1/4 */
+    ck_assert_double_eq_tol(
+        dat_at(&e, k, "stress_yy"),
+        at_once * (dat_at(&e, k, "y") < 1 ? exp(-0.25) : (1 + exp(-2)) / 2),
+        1e-8);
 }
 
 /* Without flow the state at a point is that of an increment which ends there:

@@ -534,6 +534,7 @@ static void check_disc(const crack_scene *s, int mode, double mean_bound,
     const fracture_point *p = &a.point[i];
     const double out = mode == 3 ? -1 : 1; /* growth, along the radius */
     ck_assert_double_eq_tol(p->curvature, out, 0.02);
+    ck_assert_double_le(p->radius * fabs(p->curvature), 0.5 + 1e-12);
     ck_assert_double_eq_tol(p->frame[0], out * p->origin[0], 1e-3);
     ck_assert_double_eq_tol(p->frame[1], out * p->origin[1], 1e-3);
     ck_assert_double_eq_tol(p->frame[5], 1, 1e-9);

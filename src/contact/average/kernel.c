@@ -291,13 +291,10 @@ static void add_edge(flat *f, const double *a, const double *b) {
 }
 
 /* Values at the foot and gradients of the P1 functions turn the integrals of w
- * and w y into weights. */
-static void to_weights(const flat *f, double weight[3]) {
-  const double(*p)[2] = f->p;
-  double twice = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
-                 (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+ * and w y into weights; twice the area. */
+static void to_weights(const flat *f, double twice, double weight[3]) {
   for (int k = 0; k < 3; ++k) {
-    const double *a = p[(k + 1) % 3], *b = p[(k + 2) % 3];
+    const double *a = f->p[(k + 1) % 3], *b = f->p[(k + 2) % 3];
     double at_foot = a[0] * b[1] - a[1] * b[0];
     weight[k] = (at_foot * f->sum[0] + (a[1] - b[1]) * f->sum[1] +
                  (b[0] - a[0]) * f->sum[2]) /
@@ -363,5 +360,5 @@ void face_triangle(const mollifier *m, const double *corner, const double *x,
     f.p[k][1] = dot(3, d, e1);
   }
   for (int k = 0; k < 3; ++k) add_edge(&f, f.p[k], f.p[(k + 1) % 3]);
-  to_weights(&f, weight);
+  to_weights(&f, twice, weight);
 }
