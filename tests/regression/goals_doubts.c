@@ -511,6 +511,18 @@ TEST(open_nodes_have_no_part_in_a_width) {
   }
 }
 
+/* At the end of a thin layer the pressure goes like the distance: of an end by
+ * its root half is in what half of its part changes. The width is that of
+ * elements of a twelfth. */
+TEST(widths_of_thin_layers_have_bands) {
+  JOB j = body_of_type(", TYPE=CPE3", "rect 80 4 1 0.05 alternate",
+                       "GAP\n\"x^2/4.65514\"" CONTACT
+                       "*GOAL, NAME=W, QUANTITY=WIDTH, CONTACT=C\n"
+                       "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 1\n"
+                       "TOP, 2, 2, -0.0782271\n");
+  goal_check(&j, 0.59595, -0.1, 0.0, 1.5);
+}
+
 /* A foot on a wedge of a slope of 0.03 and on a parabola, pressed in by 0.02,
  * on 14 edges: the tangential force and the width are those of 128. A corner of
  * the gap at a node, and an end that three nodes tell, are not known better. */

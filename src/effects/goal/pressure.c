@@ -716,14 +716,16 @@ static int start_end(const run *r, const line *l, int k, int at,
   return z->mirrored[k] || !border;
 }
 
-/* What an end may be off: by half of its part, where that has nodes for it,
- * else an edge over the closed nodes of its part (2 to 7 of them: up to 0.8 of
- * that), and by an edge where its part is less than a quarter. */
+/* What an end may be off: twice what half of its part changes, as where the
+ * pressure goes like the distance, but an edge over the closed nodes of its
+ * part where these are few (2 to 7 of them: up to 0.8 of that), and an edge
+ * where its part is less than a quarter. */
 static double roughness_of(const zone_ends *z, const zone_ends *half, int k,
                            double edge) {
-  if (half->w[k].n < 2 * LEAST)
-    return z->part[k] < QUARTER ? edge : edge / z->w[k].n;
-  return fmax(fabs(half->at[k] - z->at[k]), z->part[k] < QUARTER ? edge : 0.0);
+  const int n = half->w[k].n;
+  const double change = n < LEAST ? 0.0 : 2.0 * fabs(half->at[k] - z->at[k]);
+  const double least = n < 2 * LEAST ? edge / z->w[k].n : 0.0;
+  return fmax(change, z->part[k] < QUARTER ? edge : least);
 }
 
 static status set_ends(const run *r, const goal_card *g, const line *l,
