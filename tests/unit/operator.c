@@ -409,6 +409,7 @@ TEST(interior_is_expected_without_the_contact) {
     scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
     scene_contact(s, "BACK", (double[]){0, 0, 1}, 0);
     scene_fix(s, "LEFT", 0);
+    scene_fix(s, "LEFT", 1);
     s->d.rows = rows;
     s->d.sparse = 1;
     ck_assert_int_eq(stiffness_assemble(&s->d, &k), OK);

@@ -42,8 +42,8 @@ static void check_normal(const floor_case *f) {
 
 TEST(smooth_normals_are_means_but_at_corners) {
   const double a = 0.1, b = 0.3;
-  /* Of two normals, the second twice as long. */
-  const double mean = atan2(sin(a) + 2 * sin(b), cos(a) + 2 * cos(b));
+  /* Of two normals, as on a circle: that of half the length counts twice. */
+  const double mean = atan2(2 * sin(a) + sin(b), 2 * cos(a) + cos(b));
   check_normal(&(floor_case){a, b, {0}, 1, mean});
   check_normal(&(floor_case){-0.4, b, {0}, 1, b});
   check_normal(&(floor_case){a, b, {0}, 2, b});
