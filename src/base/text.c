@@ -2,7 +2,6 @@
 #include "base/text.h"
 
 #include <ctype.h>
-#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -31,73 +30,20 @@ void text_add(char *text, size_t size, const char *format, ...) {
   va_end(args);
 }
 
-/* The leading digits of value > 0, one more than that number, and the exponent
- * of the first, where a long double tells how they are rounded; 0: it does not,
- * so near to the middle between two. */
-static unsigned long leading_digits(double value, int digits, int *exponent) {
-  enum { MOST = 9, EXACT = 27 }; /* 10^27 has 63 bits and zeros */
-  long double power = 1.0L, scaled = (long double)value, limit = 10.0L;
-  int binary;
-  frexp(value, &binary);
-  *exponent = (int)floor((binary - 1) * 0.30102999566398120);
-  if (LDBL_MANT_DIG < 64 || digits > MOST || abs(digits - *exponent) > EXACT)
-    return 0;
-  for (int k = 0; k < digits; ++k) limit *= 10.0L;
-  for (int k = abs(digits - *exponent); k > 0; --k) power *= 10.0L;
-  scaled = digits > *exponent ? scaled * power : scaled / power;
-  if (scaled >= limit) { /* by one too low */
-    scaled /= 10.0L;
-    ++*exponent;
-  }
-  const unsigned long below = (unsigned long)scaled;
-  const long double part = scaled - (long double)below;
-  if (fabsl(part - 0.5L) < 1e-4L) return 0;
-  const unsigned long nearest = below + (part > 0.5L);
-  if ((long double)nearest < limit) return nearest;
-  ++*exponent;
-  return nearest / 10;
-}
-
-/* "d.ddd"; where it ends. */
-static char *put_digits(char *at, unsigned long all, int digits) {
-  for (int k = digits; k > 0; --k, all /= 10)
-    at[k + 1] = (char)('0' + all % 10);
-  at[0] = (char)('0' + all);
-  at[1] = '.';
-  return digits > 0 ? at + digits + 2 : at + 1;
-}
-
 const char *text_number(double value, int digits) {
-  int exponent = 0;
   if (isnan(value)) return "NaN";
   if (isinf(value)) return value > 0 ? "Inf" : "-Inf";
-  char *text = text_buffer(), *at = text;
-  const unsigned long all =
-      value != 0 ? leading_digits(fabs(value), digits, &exponent) : 0;
-  if (all > 0) {
-    if (value < 0) *at++ = '-';
-    at = put_digits(at, all, digits);
-  } else {
-    snprintf(text, TEXT_BUFFER, "%.*E", digits, value == 0 ? 0.0 : value);
-    at = strchr(text, 'E');
-    exponent = atoi(at + 1);
-  }
-  *at++ = 'E';
-  *at++ = exponent < 0 ? '-' : '+';
-  for (int k = 100; k > 0; k /= 10)
-    *at++ = (char)('0' + abs(exponent) / k % 10);
-  *at = '\0';
+  char *text = text_buffer();
+  snprintf(text, TEXT_BUFFER, "%.*E", digits, value == 0 ? 0.0 : value);
+  char *e = strchr(text, 'E');
+  int exponent = atoi(e + 1);
+  snprintf(e, text + TEXT_BUFFER - e, "E%c%03d", exponent < 0 ? '-' : '+',
+           abs(exponent));
   return text;
 }
 
 void text_cell(FILE *f, const char *text, int width) {
-  static const char blanks[] = "                                ";
-  enum { MOST = sizeof blanks - 1 };
-  const size_t length = strlen(text);
-  int before = width - (int)length;
-  for (; before > MOST; before -= MOST) fwrite(blanks, 1, MOST, f);
-  fwrite(blanks, 1, before > 1 ? (size_t)before : 1, f);
-  fwrite(text, 1, length, f);
+  fprintf(f, " %*s", width - 1, text);
 }
 
 void text_wrap(FILE *f, const char *text, int indent) {

@@ -31,39 +31,6 @@ TEST(exponents_have_three_digits_and_zero_no_sign) {
   ck_assert_str_eq(text_number(-INFINITY, 2), "-Inf");
 }
 
-/* Of all sizes; halves, of which the even digit is the nearest, and what is
- * next to them; nines that carry. */
-TEST(digits_are_those_of_printf) {
-  unsigned seed = 1;
-  for (int k = 0; k < 12000; ++k) {
-    char wanted[80];
-    const int digits = k % 11;
-    seed = seed * 1664525u + 1013904223u;
-    double value = k % 3 == 0   ? (1 + seed % 4000) / 8.0
-                   : k % 3 == 1 ? (1 + (seed >> 8)) * pow(10, k % 61 - 30)
-                                : pow(10, k % 50 - 25);
-    if (k % 2 == 0) value = nextafter(value, 0);
-    if (k % 7 == 0) value = -value;
-    snprintf(wanted, sizeof wanted, "%.*E", digits, value);
-    char *e = strchr(wanted, 'E');
-    const int exponent = atoi(e + 1);
-    sprintf(e, "E%c%03d", exponent < 0 ? '-' : '+', abs(exponent));
-    const char *found = text_number(value, digits);
-    ck_assert_msg(strcmp(found, wanted) == 0, "%s, not %s", found, wanted);
-  }
-}
-
-TEST(cells_are_as_wide_as_told_or_wider) {
-  char written[200] = "";
-  FILE *f = fmemopen(written, sizeof written, "w");
-  for (int width = 3; width < 6; ++width) text_cell(f, "abc", width);
-  text_cell(f, "d", 70);
-  fclose(f);
-  ck_assert_uint_eq(strlen(written), 4 + 4 + 5 + 70);
-  ck_assert_ptr_eq(strstr(written, " abc abc  abc "), written);
-  ck_assert_uint_eq(strcspn(written, "d"), 4 + 4 + 5 + 69);
-}
-
 TEST(wrapped_words_keep_their_order_and_the_indent) {
   char written[2000] = "", words[1000] = "", *line = written;
   for (int i = 0; i < 60; ++i)
