@@ -68,11 +68,10 @@ status effects_create(run *r, const effect_ops *const *table) {
   return OK;
 }
 
-const char *effects_sum_up(const run *r) {
+int effects_sum_up(const run *r) {
   for (int k = 0; k < r->effects.n; ++k)
-    if (r->effects.on[k].ops->sums_up != NULL)
-      return r->effects.on[k].ops->sums_up;
-  return NULL;
+    if (r->effects.on[k].ops->sums_up) return 1;
+  return 0;
 }
 
 /* effects_HOOK: "call" for each effect e that has the hook and for which "if_"

@@ -194,9 +194,8 @@ typedef struct effect_ops {
   int inside;                /* 1: the hooks enter the stage themselves, where
                                 it has work */
 
-  /* Reason why increments of half the length give no error of the steps with
-   * this effect; NULL: they do. */
-  const char *sums_up;
+  int sums_up; /* 1: what it does adds up over the increments, also without
+                  slip or inelastic strains before */
   /* 1: it may move or load contact nodes independently of the loads and
    * supports at the ends of a step. */
   int far;

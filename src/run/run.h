@@ -241,8 +241,8 @@ int run_step_id(const run *r); /* from 0 */
 
 /* effect.c: the hooks of all effects of a run, in the order of the table. */
 status effects_create(run *r, const effect_ops *const *table);
-/* sums_up of the first that has it, or NULL. */
-const char *effects_sum_up(const run *r);
+/* 1: some have sums_up. */
+int effects_sum_up(const run *r);
 /* history/history.c: 1: slip or inelastic strains of the increments before have
  * a part in this one. */
 int run_remembers(const run *r);

@@ -215,7 +215,7 @@ static const effect_ops bare = {.name = "bare",
                                 .bit = NO_BIT,
                                 .required = yes,
                                 .own = STAGE_NONE,
-                                .sums_up = "why",
+                                .sums_up = 1,
                                 .far = 1,
                                 .strains = strains};
 static const effect_ops *const table[] = {&a,   &off, &b, &bare,
@@ -387,13 +387,13 @@ TEST(rows_are_asked_for_what_they_say) {
   run r = {.m = &words};
   failing = 0;
   ck_assert_int_eq(effects_create(&r, table), OK);
-  ck_assert_str_eq(effects_sum_up(&r), "why");
+  ck_assert(effects_sum_up(&r));
   ck_assert_int_eq(effects_reach_far(&r), 1);
   ck_assert_int_eq(effects_strain(&r, 3), 1);
   ck_assert_int_eq(effects_strain(&r, 2), 0);
   r = (run){.m = &words};
   ck_assert_int_eq(effects_create(&r, (const effect_ops *[]){&a, NULL}), OK);
-  ck_assert_ptr_null(effects_sum_up(&r));
+  ck_assert(!effects_sum_up(&r));
   ck_assert_int_eq(effects_reach_far(&r), 0);
   ck_assert_int_eq(effects_strain(&r, 3), 0);
 }

@@ -107,7 +107,7 @@ done:
 static status adapt(run *r, void *self, int *made) {
   double end = r->step->start + r->step->total;
   /* TIME=BALANCED goes before TOLERANCE=, where it can. */
-  int balanced = r->step->accuracy.time_balanced && effects_sum_up(r) == NULL;
+  int balanced = r->step->accuracy.time_balanced && !effects_sum_up(r);
   if (balanced || !(r->step->visco.tolerance > 0.0)) return OK;
   *made = 1;
   while (r->old.t < end) {

@@ -225,7 +225,7 @@ static const column columns[] = {
 const effect_ops wear_effect = {
   .name = "wear", .bit = NO_BIT, .required = requires_wear,
   .expected = expected, .table = {PRINT_WEAR, PER_CONTACT_NODE},
-  .sums_up = "wear of one static problem, no path",
+  .sums_up = 1,
   .size = sizeof(double), .count = length_of, .copy_as = COPY_IS_EQUAL,
   .on = {.pose = open_gaps, .accept = wear_off, .keep = keep},
   COLUMNS_OF(columns)};

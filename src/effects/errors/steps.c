@@ -22,6 +22,8 @@
 #include "run/history/loop.h"
 #include "run/visco.h"
 
+#include <cblas.h>
+
 #include "run/column_row.h"
 
 static const double EXTRAPOLATION = 5.0 / 3.0; /* -, of growing zones */
@@ -117,16 +119,13 @@ static status half(run *r, finer_path *p, waypoint *from, double t,
   int known = 1;
   if (p->lost) return OK;
   double *depth = wear_depths(r, &n);
-  OWNED_NEW(double, of_run, depth != NULL ? n : 1);
+  /* The effect has the depths of the half while that is made. */
   if (depth != NULL) {
-    COPY(of_run, depth, n);
-    COPY(depth, from->depth, n);
+    memmove(to->depth, from->depth, n * sizeof *depth);
+    cblas_dswap((int)n, depth, 1, to->depth, 1);
   }
   const status st = advance_from(r, from, t, to, &known);
-  if (depth != NULL) {
-    COPY(to->depth, depth, n);
-    COPY(depth, of_run, n);
-  }
+  if (depth != NULL) cblas_dswap((int)n, depth, 1, to->depth, 1);
   PASS(st);
   start_point_copy(r, &r->now, &to->start);
   if (!known) return lose(p, "wear at corners of half the increments");
@@ -147,7 +146,7 @@ static void restart(paths *own) {
  * depend on their path. */
 static int path_exists(const run *r) {
   return run_inherits(r) &&
-         (effects_sum_up(r) == NULL || r->step->kind != STEP_STATIC);
+         (!effects_sum_up(r) || r->step->kind != STEP_STATIC);
 }
 
 /* The attempt is accepted: the next one starts at its end. */
@@ -265,7 +264,7 @@ static path_error field_difference(const run *r, finer_path *p) {
 
 /* From the difference to half the increments to the error. */
 static double extrapolation(const run *r) {
-  if (effects_sum_up(r) != NULL) return 2.0;
+  if (effects_sum_up(r)) return 2.0;
   if (r->step->kind != STEP_VISCO || r->strains.visco == NULL)
     return EXTRAPOLATION;
   if (visco_order(r->step) < 2) return 2.0;
@@ -273,7 +272,6 @@ static double extrapolation(const run *r) {
 }
 
 static const char *why_no_path(const run *r) {
-  if (effects_sum_up(r) != NULL) return effects_sum_up(r);
   if (r->step->kind == STEP_STATIC) return "one static problem, no path";
   return r->step->kind == STEP_VISCO ? "no friction, no law flows: no path"
                                      : "no friction, no path";
@@ -356,7 +354,7 @@ static status compare(run *r, void *self) {
   e->relative = 0.0;
   e->why = NULL;
   if (!e->asked) return OK;
-  if (effects_sum_up(r) != NULL && !path_exists(r)) e->relative = NAN;
+  if (effects_sum_up(r) && !path_exists(r)) e->relative = NAN;
   if (path_exists(r))
     PASS(compare_path(r, own, e));
   else
@@ -557,7 +555,7 @@ static status attempt_balanced(run *r, paths *own) {
 static status march(run *r, void *self, int *made) {
   paths *own = self;
   double end = r->step->start + r->step->total;
-  if (!r->step->accuracy.time_balanced || effects_sum_up(r) != NULL ||
+  if (!r->step->accuracy.time_balanced || effects_sum_up(r) ||
       !path_exists(r) || !run_remembers(r))
     return OK;
   *made = 1;

@@ -80,7 +80,7 @@ static int has_cracks_alone(const run *r) {
 
 static int is_covered(const run *r) {
   return has_cracks_alone(r) && r->body.d.cluster == NULL &&
-         r->strains.visco == NULL && effects_sum_up(r) == NULL &&
+         r->strains.visco == NULL && !effects_sum_up(r) &&
          r->problem.given == NULL && r->m->mesh.corner_id < 0 &&
          (r->nodes.n == 0 || contact_has_stiffness(&r->problem.cp)) &&
          r->solving.report.outcome > 0;

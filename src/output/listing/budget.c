@@ -54,8 +54,7 @@ static int path_counts(const model *m) {
   const unsigned path = EFFECT_HISTORY | EFFECT_INELASTIC;
   int sums = 0;
   for (int k = 0; effect_table[k] != NULL; ++k)
-    sums |=
-        effect_table[k]->sums_up != NULL && effect_is_on(effect_table[k], m);
+    sums |= effect_table[k]->sums_up && effect_is_on(effect_table[k], m);
   return sums || (m->effects & path) != 0;
 }
 

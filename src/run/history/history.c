@@ -53,7 +53,7 @@ static int holds_strains(const run *r) {
 }
 
 int run_inherits(const run *r) {
-  return run_remembers(r) || holds_strains(r) || effects_sum_up(r) != NULL;
+  return run_remembers(r) || holds_strains(r) || effects_sum_up(r);
 }
 
 /* 1: the start state of this increment contains one that did not converge. */
