@@ -20,6 +20,7 @@
 typedef struct body_size {
   double load;         /* largest load, N */
   double contact;      /* largest contact force, N */
+  double rounding;     /* of it, the largest over the nodes, N */
   double displacement; /* largest of both over the stiffness of its node, m */
   double fallen;       /* largest c_n times the part of its gap that a node has
                           moved, N */

@@ -349,12 +349,6 @@ static INLINED void measure_part(measure *x, int forces) {
   if (forces) end_forces(x, n_body);
 }
 
-static void measure_set(const contact_problem *cp, double scale,
-                        const double *u, const double *r, measure *x) {
-  *x = (measure){.cp = cp, .dim = cp->dim, .u = u, .r = r, .scale = scale};
-  measure_part(x, 1);
-}
-
 /* Forces that a part of a node, of stiffness c, is compared with. */
 static INLINED double forces_of(const measure *x, const measured *node,
                                 const body_size *b, double c) {
@@ -383,6 +377,16 @@ static INLINED measured *round_node(measure *x, int node_id) {
   node->rounding = ROUNDING * (terms + weight * b->carried);
   node->drift = weight * b->drift;
   return node;
+}
+
+static void measure_set(const contact_problem *cp, double scale,
+                        const double *u, const double *r, measure *x) {
+  *x = (measure){.cp = cp, .dim = cp->dim, .u = u, .r = r, .scale = scale};
+  measure_part(x, 1);
+  for (int i = 0; i < cp->n; ++i) {
+    body_size *b = body_of(x, i);
+    b->rounding = larger(b->rounding, round_node(x, i)->rounding);
+  }
 }
 
 /* The same, and what is compared with it. */
@@ -526,11 +530,11 @@ double contact_mismatch(const contact_problem *cp, double scale,
 
 /* ---- status ------------------------------------------------------------ */
 
-/* 1: no load acts on the body of a node but for the rounding of all loads, and
- * its contact forces are rounding. */
-static int has_no_force(const measure *x, const body_size *b,
-                        const measured *node) {
-  return b->load <= ROUNDING * x->cp->load && !(b->contact > node->rounding);
+/* 1: no load acts on the body but for the rounding of all loads, and its
+ * contact forces are rounding: that of some node, of which a soft one has less.
+ */
+static int has_no_force(const measure *x, const body_size *b) {
+  return b->load <= ROUNDING * x->cp->load && !(b->contact > b->rounding);
 }
 
 static INLINED void find_roundings(const contact_problem *cp, int dim,
@@ -574,7 +578,7 @@ double contact_hidden(const contact_problem *cp, const double *u,
     const node_step e = map_errors(&x, i, node);
     double most = larger(b->load, b->contact), side = 1.0;
     if (own != NULL) most = larger(most, own[i]);
-    if (has_no_force(&x, b, node)) continue;
+    if (has_no_force(&x, b)) continue;
     if (cp->g0 != NULL && node->q[0] < 0.0)
       side = smaller(1.0, contact_node_limit(cp, r, i) / -node->q[0]);
     if (side > 0.0) side = larger(side, SLIGHT);
@@ -618,7 +622,7 @@ static int is_closed(measure *x, int node_id, const measured *node, int k,
   const body_size *b = body_of(x, node_id);
   const double least = STATUS_MARGIN * forces_of(x, node, b, c);
   double push = c * (x->u[dof] - contact_bound(x->cp, dof)) - x->r[dof];
-  return push > least && !has_no_force(x, b, node);
+  return push > least && !has_no_force(x, b);
 }
 
 /* 1: friction holds a node; at its limit, where it rests, as "rests" says. */

@@ -169,6 +169,21 @@ TEST(rounding_of_the_loads_is_no_load) {
   }
 }
 
+/* A body that nothing presses, moved with its stiff support: forces within the
+ * rounding of its stiff node are that of the soft one, too. */
+TEST(rounding_of_a_body_is_that_of_its_stiff_nodes) {
+  CONTACT_CASE c = free_body(0.0);
+  const double u[4] = {0.25, 0.0, 0.25, 0.0}, r[4] = {-1e-11, 0.0, -1e-11, 0.0};
+  contact_status state[2];
+  c.gap[0] = c.gap[1] = 0.25;
+  c.A[0] = 4e4;
+  c.cp.load = 1.0;
+  contact_classify(&c.cp, u, r, state);
+  ck_assert(state[0] == CONTACT_OPEN && state[1] == CONTACT_OPEN);
+  c.gap[0] = c.gap[1] = 1.0;
+  ck_assert_double_eq(contact_hidden(&c.cp, u, r, NULL), 0.0);
+}
+
 TEST(scale_is_of_the_problem) {
   CONTACT_CASE c = one_node(4.0, 2.0, 0.5);
   ck_assert(contact_scale(&c.cp) == 0.0);
