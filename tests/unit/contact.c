@@ -177,6 +177,7 @@ TEST(rounding_of_a_body_is_that_of_its_stiff_nodes) {
   contact_status state[2];
   c.gap[0] = c.gap[1] = 0.25;
   c.A[0] = 4e4;
+  c.A[5] = c.A[15] = 4.0;
   c.cp.load = 1.0;
   contact_classify(&c.cp, u, r, state);
   ck_assert(state[0] == CONTACT_OPEN && state[1] == CONTACT_OPEN);
