@@ -288,6 +288,18 @@ TEST(high_powers_without_a_threshold_are_solved) {
   }
 }
 
+/* An old stress, as rounding leaves it, flows in a step without any strain. */
+TEST(stresses_flow_where_no_strain_is) {
+  static const point_drive still = {.held = {1, 1, 1, 1, 1, 1}};
+  const double G = 1000 / 2.6, z = 3 * G * 4e-4;
+  start("NORTON", "4e-4, 1.", &still);
+  b.old.sigma[3] = 1e-17;
+  point_body_run(&b, scheme_find("THETA"), 0.5, 1, 1, NULL);
+  ck_assert_double_eq_tol(b.now.ei[3], 0.5 * z / (1 + 0.5 * z) * 1e-17 / G,
+                          1e-12 * 1e-17 / G);
+  point_body_free(&b);
+}
+
 /* An attempt that is thrown away: the state it started from is as it was, and
  * the next attempt gives the bytes of a first one. */
 TEST(a_rejected_step_leaves_nothing_behind) {

@@ -172,11 +172,13 @@ static int point_update(const scheme_step *p, const double *sigma_old,
   return 0;
 }
 
-/* Largest current strain, the scale of the residual. */
+/* Largest current strain, the scale of the residual: that of y where an old
+ * stress flows and the strain is zero. */
 static double point_scale(const point_step *l) {
   double scale = 0.0;
   for (int i = 0; i < l->ns; ++i)
-    scale = fmax(scale, fmax(fabs(l->e[i]), fabs(l->old[i])));
+    scale =
+        fmax(scale, fmax(fabs(l->e[i]), fmax(fabs(l->old[i]), fabs(l->y[i]))));
   return scale;
 }
 
@@ -194,8 +196,9 @@ static double alpha_misfit(const point_step *l) {
 static int point_newton(const scheme_step *p, const double *sigma_old,
                         point_step *l) {
   double residual = point_residual(p, sigma_old, l->y, l, l->f);
-  const double enough = point_tol * point_scale(l);
+  double enough = 0.0;
   for (int k = 0; k < MOST_LOCAL; ++k) {
+    enough = point_tol * point_scale(l);
     if (residual <= enough && alpha_misfit(l) <= alpha_tol) return 1;
     double before = residual;
     point_matrix(p, l->E, l);
