@@ -178,6 +178,8 @@ TEST(slow_relaxation_is_left_out) {
   stays(&crept, "inelastic strain");
 }
 
+#define NEXT "*END STEP\n*STEP\n"
+
 /* A ramp of 1 s in four increments: strain lags behind by the creep of the
  * last 0.1 ms of 0.25 s. In the place of the law E E1/(E + E1). */
 TEST(law_at_its_end_is_left_out) {
@@ -189,8 +191,12 @@ TEST(law_at_its_end_is_left_out) {
                       NULL};
   scene series = fast, sudden = fast, slow = fast, fluid = fast;
   scene just = fast, beyond = fast; /* tried up to 2.5e-5 of time */
+  scene at_once = fast, middle = fast;
   just.material = "*INELASTIC, LAW=ZENER\n65.D3, 1.6\n";
   beyond.material = "*INELASTIC, LAW=ZENER\n65.D3, 1.65\n";
+  beyond.loads = "LEFT, P, 20.\n" NEXT "*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n";
+  at_once.loads = "LEFT, P, 20.\n" NEXT "*QUASISTATIC\n0.5, 1.\n";
+  middle.loads = "LEFT, P, 20.\n" NEXT "*VISCO, INTEGRATOR=MIDPOINT\n0.5, 1.\n";
   series.material = "*INELASTIC, LAW=PRONY\n0.3, 0.2, 1.D-6\n0.4, 0., 1.D-9\n";
   sudden.loads =
       "LEFT, P, 20.\n*TEMPERATURE\nBODY, 0.\n*DSLOAD, AMPLITUDE=ON\n"
@@ -201,6 +207,8 @@ TEST(law_at_its_end_is_left_out) {
   compare(&series, "inelastic strain", 1, 1e-3);
   compare(&just, "inelastic strain", -1, 1e-12);
   stays(&beyond, "inelastic strain");
+  stays(&at_once, "inelastic strain");
+  stays(&middle, "inelastic strain");
   compare(&sudden, "inelastic strain", -1, 1e-12);
   stays(&slow, "inelastic strain");
   stays(&fluid, "inelastic strain");
