@@ -388,6 +388,17 @@ TEST(peaks_do_not_jump_where_a_zone_reaches_a_plane) {
   ck_assert_double_eq_tol(part[1], part[0], 0.003);
 }
 
+/* The pressure of the parabola is the largest between two nodes. */
+TEST(largest_mean_is_between_the_nodes) {
+  JOB j = of_peak("rect 20 10 1 0.5", "0.1*(x-0.51)^2",
+                  ", RADIUS=0.1\n*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=C, "
+                  "RADIUS=0.1\n0.51, 0.",
+                  "LEFT, 1\nTOP, 2, 2, -0.01\n");
+  DAT t = job_table(&j, "GOALS", -1);
+  const double at = dat_at(&t, 1, "value");
+  ck_assert_double_eq_tol(dat_at(&t, 0, "value"), at, 1e-3 * at);
+}
+
 /* On elements that no smaller mean fits, the largest pressure may be that of
  * its node. */
 TEST(peaks_on_few_elements_have_that_of_their_node_in_the_band) {
