@@ -569,6 +569,7 @@ static void write_cube(job *j, const char *cards) {
             "Physical Surface(\"FOOT\") = {1};\n"
             "Physical Surface(\"TOP\") = {e[0]};\n"
             "Physical Surface(\"YS\") = {e[2]};\n"
+            "Physical Surface(\"YE\") = {e[4]};\n"
             "Physical Surface(\"XS\") = {e[5]};\n"
             "Physical Point(\"PIN\") = {5};\n");
   job_write(j, "cube.inp",
@@ -581,7 +582,8 @@ static void write_cube(job *j, const char *cards) {
 }
 
 /* The mean of a pressure in space goes on behind planes of symmetry, and a node
- * that a support holds in the middle is on none. */
+ * that a support holds in the middle is on none; planes are normal to any axis.
+ */
 TEST(means_in_space_go_on_behind_planes_of_symmetry) {
   JOB j = job_begin("cube");
   write_cube(&j,
@@ -601,6 +603,14 @@ TEST(means_in_space_go_on_behind_planes_of_symmetry) {
     ck_assert_double_eq_tol(g.value + g.error, 10.0, 0.1);
   }
   ck_assert(goal_has_verdict(&j, "CUT", "no_end"));
+  write_cube(&j,
+             "*OBSTACLE, NAME=W, TYPE=PLANE\n0., 2., 0.\n0., -1., 0.\n"
+             "*CONTACT, NAME=WALL, GROUP=YE, OBSTACLE=W\n"
+             "*GOAL, NAME=SIDE, QUANTITY=PRESSURE, CONTACT=WALL, RADIUS=0.9\n"
+             "0., 2., 1.\n"
+             "*STEP\n*STATIC\n*BOUNDARY\nXS, 1\nTOP, 3\n*DSLOAD\n"
+             "YS, P, 10.\n*PRINT, GOALS\n");
+  ck_assert_double_eq_tol(told_of(&j, 0).value, 10.0, 0.5);
 }
 
 /* A support that holds the end of a contact, and no more, is no plane of
