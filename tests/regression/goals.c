@@ -474,8 +474,9 @@ TEST(means_of_a_pressure_lie_on_its_surface) {
   ck_assert(isnan(told_of(&j, 0).value));
 }
 
-/* The mean stress under a weight is that of its moment, whatever the mesh, and
- * the mean of two displacements has the mean of their errors. */
+/* The mean stress under a weight is that of its moment, whatever the mesh, so
+ * that the errors of its halves are opposite, and the mean of two displacements
+ * has the mean of their errors. */
 TEST(means_are_of_volumes_and_of_nodes) {
   JOB j = job_begin("block");
   write_block(&j, 0.1, 1000., "",
@@ -483,7 +484,10 @@ TEST(means_are_of_volumes_and_of_nodes) {
               "*GOAL, NAME=L, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 2.\n"
               "*GOAL, NAME=R, QUANTITY=DISPLACEMENT, COMPONENT=2\n4., 2.\n"
               "*GOAL, NAME=BOTH, QUANTITY=DISPLACEMENT, GROUP=CORNERS, "
-              "COMPONENT=2\n*STEP\n*STATIC\n*BOUNDARY\nFOOT, 1, 2\n*DLOAD\n"
+              "COMPONENT=2\n"
+              "*GOAL, NAME=SL, QUANTITY=STRESS, GROUP=LEFT, COMPONENT=YY\n"
+              "*GOAL, NAME=SR, QUANTITY=STRESS, GROUP=RIGHT, COMPONENT=YY\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nFOOT, 1, 2\n*DLOAD\n"
               "LEFT, BY, -1.\nRIGHT, BY, -3.\n*PRINT, GOALS\n");
   ck_assert_double_eq_tol(told_of(&j, 0).value, -2.0, 1e-9);
   const told l = told_of(&j, 1), r = told_of(&j, 2), both = told_of(&j, 3);
@@ -492,6 +496,9 @@ TEST(means_are_of_volumes_and_of_nodes) {
   ck_assert_double_gt(fabs(l.error), 1e-3 * fabs(l.value));
   ck_assert_double_eq_tol(both.error, 0.5 * (l.error + r.error),
                           1e-6 * fabs(l.error));
+  const told sl = told_of(&j, 4), sr = told_of(&j, 5);
+  ck_assert_double_gt(fabs(sl.error), 1e-5 * fabs(sl.value));
+  ck_assert_double_eq_tol(sl.error, -sr.error, 1e-6 * fabs(sl.error));
 }
 
 /* A pressed block without friction to speak of slips to both sides from its
