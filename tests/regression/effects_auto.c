@@ -21,10 +21,11 @@ typedef struct scene {
 static const char *touching = "CONTACT"; /* group of the contact            */
 static const char *held = "SYMMETRY, 1, 1";
 static double height = 30.0;
+static int two = 0; /* 1: the upper half is ELSET=UPPER                   */
 
 static job try_scene(const scene *s, int *code) {
   job j = job_begin("block");
-  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, height}, 0);
+  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, height}, two);
   job_write(&j, "block.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=STEEL\n*ELASTIC\n"
             "130.D3, %.17g\n%s"
@@ -226,8 +227,8 @@ TEST(law_below_its_threshold_is_left_out) {
   compare(&corner, "inelastic strain", -1, 1e-12);
 }
 
-/* Flow near a corner only: the law is left out elsewhere, and all is the same.
- */
+/* Flow near a corner only: the law is left out elsewhere, and all is the same,
+ * also below an elastic material. */
 TEST(elements_below_the_threshold_are_left_out) {
   const scene corner = {"*INELASTIC, LAW=BINGHAM\n100., 1.D5\n",
                         coulomb,
@@ -235,10 +236,16 @@ TEST(elements_below_the_threshold_are_left_out) {
                         "",
                         0.2,
                         "0.02"};
-  scene everywhere = corner;
+  scene everywhere = corner, lower = corner;
   everywhere.material = "*INELASTIC, LAW=BINGHAM\n20., 1.D5\n";
+  lower.material =
+      "*INELASTIC, LAW=BINGHAM\n100., 1.D5\n"
+      "*MATERIAL, NAME=LEAD\n*ELASTIC\n130.D3, 0.2\n"
+      "*SOLID SECTION, ELSET=UPPER, MATERIAL=LEAD, TYPE=CPE3\n";
   compare(&corner, "inelastic strain", 1, 1e-8);
   stays(&everywhere, "inelastic strain");
+  two = 1;
+  compare(&lower, "inelastic strain", 1, 1e-8);
 }
 
 /* Nodes are 5 apart, those of the side of a high block 10. */
