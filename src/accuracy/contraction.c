@@ -216,7 +216,7 @@ static status measure(linear_contact *s, const double *r, double *rate) {
   for (int k = 1; k <= PASSES && last > 0.0; ++k) {
     change_limit(s, dn);
     double energy = move(s);
-    if (k > 1 || s->at.cp->n == 1) *rate = fmax(*rate, sqrt(energy / last));
+    if (k > 1) *rate = fmax(*rate, sqrt(energy / last));
     last = energy;
   }
   if (*rate <= DBL_EPSILON) *rate = 0.0; /* the rounding of A x */

@@ -332,8 +332,7 @@ static void set_resultant(contact_surface *s, int i, int c, int normal, int m,
 static double weight_of(const pair_row *row, int m, const pair_row *rows) {
   double sum = 0.0;
   for (int e = 0; e < m; ++e)
-    if (rows[e].normal == row->normal && rows[e].of != NULL)
-      sum += own_area(&rows[e]);
+    if (rows[e].normal == row->normal) sum += own_area(&rows[e]);
   return own_area(row) / sum;
 }
 

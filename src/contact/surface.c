@@ -596,11 +596,10 @@ static status set_node(builder *b, contact_surface *s, int n_kept,
   return couple_node(b, s, i, n_kept < dim ? n_kept : dim, kept);
 }
 
-/* What a deck adds to the gap of a pair, m; 0: nothing, or a formula. */
+/* The INTERFERENCE or CLEARANCE of a pair, m; 0: none, or a formula. */
 static double added(const contact_pair *p) {
-  return p->change == NULL || p->change->formula != NULL
-             ? 0.0
-             : p->change_sign * p->change->number;
+  return p->change == NULL || p->change->formula != NULL ? 0.0
+                                                         : p->change->number;
 }
 
 /* What facets of a curved surface are off by, m. */

@@ -21,10 +21,11 @@ typedef struct scene {
 static const char *touching = "CONTACT"; /* group of the contact            */
 static const char *held = "SYMMETRY, 1, 1";
 static double height = 30.0;
+static int two = 0; /* 1: the upper half is ELSET=UPPER                   */
 
 static job try_scene(const scene *s, int *code) {
   job j = job_begin("block");
-  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, height}, 0);
+  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, height}, two);
   job_write(&j, "block.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=STEEL\n*ELASTIC\n"
             "130.D3, %.17g\n%s"
@@ -178,6 +179,8 @@ TEST(slow_relaxation_is_left_out) {
   stays(&crept, "inelastic strain");
 }
 
+#define NEXT "*END STEP\n*STEP\n"
+
 /* A ramp of 1 s in four increments: strain lags behind by the creep of the
  * last 0.1 ms of 0.25 s. In the place of the law E E1/(E + E1). */
 TEST(law_at_its_end_is_left_out) {
@@ -189,8 +192,12 @@ TEST(law_at_its_end_is_left_out) {
                       NULL};
   scene series = fast, sudden = fast, slow = fast, fluid = fast;
   scene just = fast, beyond = fast; /* tried up to 2.5e-5 of time */
+  scene at_once = fast, middle = fast;
   just.material = "*INELASTIC, LAW=ZENER\n65.D3, 1.6\n";
   beyond.material = "*INELASTIC, LAW=ZENER\n65.D3, 1.65\n";
+  beyond.loads = "LEFT, P, 20.\n" NEXT "*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n";
+  at_once.loads = "LEFT, P, 20.\n" NEXT "*QUASISTATIC\n0.5, 1.\n";
+  middle.loads = "LEFT, P, 20.\n" NEXT "*VISCO, INTEGRATOR=MIDPOINT\n0.5, 1.\n";
   series.material = "*INELASTIC, LAW=PRONY\n0.3, 0.2, 1.D-6\n0.4, 0., 1.D-9\n";
   sudden.loads =
       "LEFT, P, 20.\n*TEMPERATURE\nBODY, 0.\n*DSLOAD, AMPLITUDE=ON\n"
@@ -201,6 +208,8 @@ TEST(law_at_its_end_is_left_out) {
   compare(&series, "inelastic strain", 1, 1e-3);
   compare(&just, "inelastic strain", -1, 1e-12);
   stays(&beyond, "inelastic strain");
+  stays(&at_once, "inelastic strain");
+  stays(&middle, "inelastic strain");
   compare(&sudden, "inelastic strain", -1, 1e-12);
   stays(&slow, "inelastic strain");
   stays(&fluid, "inelastic strain");
@@ -218,8 +227,8 @@ TEST(law_below_its_threshold_is_left_out) {
   compare(&corner, "inelastic strain", -1, 1e-12);
 }
 
-/* Flow near a corner only: the law is left out elsewhere, and all is the same.
- */
+/* Flow near a corner only: the law is left out elsewhere, and all is the same,
+ * also below an elastic material. */
 TEST(elements_below_the_threshold_are_left_out) {
   const scene corner = {"*INELASTIC, LAW=BINGHAM\n100., 1.D5\n",
                         coulomb,
@@ -227,10 +236,16 @@ TEST(elements_below_the_threshold_are_left_out) {
                         "",
                         0.2,
                         "0.02"};
-  scene everywhere = corner;
+  scene everywhere = corner, lower = corner;
   everywhere.material = "*INELASTIC, LAW=BINGHAM\n20., 1.D5\n";
+  lower.material =
+      "*INELASTIC, LAW=BINGHAM\n100., 1.D5\n"
+      "*MATERIAL, NAME=LEAD\n*ELASTIC\n130.D3, 0.2\n"
+      "*SOLID SECTION, ELSET=UPPER, MATERIAL=LEAD, TYPE=CPE3\n";
   compare(&corner, "inelastic strain", 1, 1e-8);
   stays(&everywhere, "inelastic strain");
+  two = 1;
+  compare(&lower, "inelastic strain", 1, 1e-8);
 }
 
 /* Nodes are 5 apart, those of the side of a high block 10. */

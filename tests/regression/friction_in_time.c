@@ -91,15 +91,20 @@ TEST(constant_amplitude_and_motion) {
   }
 }
 
-/* The jump of the expression at t = 1.6 is found between two increments. */
+/* The jump of the expression, or of that of an amplitude, at t = 1.6 is found
+ * between two increments. */
 TEST(jump_of_an_expression_is_told) {
-  JOB j =
-      run_drag("*FRICTION, CONTACT=F, LAW=COULOMB\n\"if(t < 1.6, 0.2, 0.3)\"\n",
-               "if(t < 1.6, 2, 3)", "*END STEP\n");
-  for (int i = 1; i <= 4; ++i)
-    check_slip(&j, i, 1 + 0.25 * i, i < 3 ? 0.2 : 0.3);
-  ck_assert(job_tells(
-      &j, "  mu of contact F jumps at t = 1.6 from 0.2 to 0.3, node 1\n"));
+  static const char *const cards[] = {
+      "*FRICTION, CONTACT=F, LAW=COULOMB\n\"if(t < 1.6, 0.2, 0.3)\"\n",
+      "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"if(t < 1.6, 1, 1.5)\"\n"
+      "*FRICTION, CONTACT=F, LAW=COULOMB, AMPLITUDE=A\n0.2\n"};
+  for (int k = 0; k < 2; ++k) {
+    JOB j = run_drag(cards[k], "if(t < 1.6, 2, 3)", "*END STEP\n");
+    for (int i = 1; i <= 4; ++i)
+      check_slip(&j, i, 1 + 0.25 * i, i < 3 ? 0.2 : 0.3);
+    ck_assert(job_tells(
+        &j, "  mu of contact F jumps at t = 1.6 from 0.2 to 0.3, node 1\n"));
+  }
 }
 
 /* A course that comes to zero at the end of an increment has no jump. */

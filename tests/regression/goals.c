@@ -474,8 +474,9 @@ TEST(means_of_a_pressure_lie_on_its_surface) {
   ck_assert(isnan(told_of(&j, 0).value));
 }
 
-/* The mean stress under a weight is that of its moment, whatever the mesh, and
- * the mean of two displacements has the mean of their errors. */
+/* The mean stress under a weight is that of its moment, whatever the mesh, so
+ * that the errors of its halves are opposite, and the mean of two displacements
+ * has the mean of their errors. */
 TEST(means_are_of_volumes_and_of_nodes) {
   JOB j = job_begin("block");
   write_block(&j, 0.1, 1000., "",
@@ -483,7 +484,10 @@ TEST(means_are_of_volumes_and_of_nodes) {
               "*GOAL, NAME=L, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 2.\n"
               "*GOAL, NAME=R, QUANTITY=DISPLACEMENT, COMPONENT=2\n4., 2.\n"
               "*GOAL, NAME=BOTH, QUANTITY=DISPLACEMENT, GROUP=CORNERS, "
-              "COMPONENT=2\n*STEP\n*STATIC\n*BOUNDARY\nFOOT, 1, 2\n*DLOAD\n"
+              "COMPONENT=2\n"
+              "*GOAL, NAME=SL, QUANTITY=STRESS, GROUP=LEFT, COMPONENT=YY\n"
+              "*GOAL, NAME=SR, QUANTITY=STRESS, GROUP=RIGHT, COMPONENT=YY\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nFOOT, 1, 2\n*DLOAD\n"
               "LEFT, BY, -1.\nRIGHT, BY, -3.\n*PRINT, GOALS\n");
   ck_assert_double_eq_tol(told_of(&j, 0).value, -2.0, 1e-9);
   const told l = told_of(&j, 1), r = told_of(&j, 2), both = told_of(&j, 3);
@@ -492,6 +496,9 @@ TEST(means_are_of_volumes_and_of_nodes) {
   ck_assert_double_gt(fabs(l.error), 1e-3 * fabs(l.value));
   ck_assert_double_eq_tol(both.error, 0.5 * (l.error + r.error),
                           1e-6 * fabs(l.error));
+  const told sl = told_of(&j, 4), sr = told_of(&j, 5);
+  ck_assert_double_gt(fabs(sl.error), 1e-5 * fabs(sl.value));
+  ck_assert_double_eq_tol(sl.error, -sr.error, 1e-6 * fabs(sl.error));
 }
 
 /* A pressed block without friction to speak of slips to both sides from its
@@ -569,6 +576,7 @@ static void write_cube(job *j, const char *cards) {
             "Physical Surface(\"FOOT\") = {1};\n"
             "Physical Surface(\"TOP\") = {e[0]};\n"
             "Physical Surface(\"YS\") = {e[2]};\n"
+            "Physical Surface(\"YE\") = {e[4]};\n"
             "Physical Surface(\"XS\") = {e[5]};\n"
             "Physical Point(\"PIN\") = {5};\n");
   job_write(j, "cube.inp",
@@ -581,7 +589,8 @@ static void write_cube(job *j, const char *cards) {
 }
 
 /* The mean of a pressure in space goes on behind planes of symmetry, and a node
- * that a support holds in the middle is on none. */
+ * that a support holds in the middle is on none; planes are normal to any axis.
+ */
 TEST(means_in_space_go_on_behind_planes_of_symmetry) {
   JOB j = job_begin("cube");
   write_cube(&j,
@@ -601,6 +610,14 @@ TEST(means_in_space_go_on_behind_planes_of_symmetry) {
     ck_assert_double_eq_tol(g.value + g.error, 10.0, 0.1);
   }
   ck_assert(goal_has_verdict(&j, "CUT", "no_end"));
+  write_cube(&j,
+             "*OBSTACLE, NAME=W, TYPE=PLANE\n0., 2., 0.\n0., -1., 0.\n"
+             "*CONTACT, NAME=WALL, GROUP=YE, OBSTACLE=W\n"
+             "*GOAL, NAME=SIDE, QUANTITY=PRESSURE, CONTACT=WALL, RADIUS=0.9\n"
+             "0., 2., 1.\n"
+             "*STEP\n*STATIC\n*BOUNDARY\nXS, 1\nTOP, 3\n*DSLOAD\n"
+             "YS, P, 10.\n*PRINT, GOALS\n");
+  ck_assert_double_eq_tol(told_of(&j, 0).value, 10.0, 0.5);
 }
 
 /* A support that holds the end of a contact, and no more, is no plane of

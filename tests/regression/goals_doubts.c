@@ -464,7 +464,7 @@ TEST(ends_of_loads_are_not_reliable) {
 }
 
 /* Under a force on a node the displacement grows without end with the elements,
- * in the plane and in space; not where there is none. */
+ * in the plane and, against the axis, in space; not where there is none. */
 TEST(forces_on_nodes_are_not_reliable) {
   static const char *const flat[] = {"rect %d %d 2 1 alternate", "2., 1.", ""};
   static const char *const space[] = {"box %d %d 4 1 1 1", "1., 1., 1.",
@@ -480,14 +480,14 @@ TEST(forces_on_nodes_are_not_reliable) {
               "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1\n%s\n" ENERGY
               "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n%s"
               "*DSLOAD\nTOP, P, \"10+x^2\"\n*CLOAD\nTIP, 1, %d\n",
-              of[1], of[2], k < 2);
+              of[1], of[2], k < 2 ? 5 - 2 * dim : 0);
       JOB j = body_of(words, cards);
       DAT t = job_table(&j, "GOALS", -1);
       if (k < 2) value[k] = dat_at(&t, 0, "value");
       ck_assert_int_eq(goal_has_verdict(&j, "U", "support_end"), k < 2);
       ck_assert_int_eq(goal_has_verdict(&j, "E", "support_end"), k < 2);
     }
-    ck_assert_double_gt(value[1], 1.05 * value[0]);
+    ck_assert_double_gt(fabs(value[1] - value[0]), 0.05 * fabs(value[0]));
   }
 }
 

@@ -388,6 +388,17 @@ TEST(peaks_do_not_jump_where_a_zone_reaches_a_plane) {
   ck_assert_double_eq_tol(part[1], part[0], 0.003);
 }
 
+/* The pressure of the parabola is the largest between two nodes. */
+TEST(largest_mean_is_between_the_nodes) {
+  JOB j = of_peak("rect 20 10 1 0.5", "0.1*(x-0.51)^2",
+                  ", RADIUS=0.1\n*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=C, "
+                  "RADIUS=0.1\n0.51, 0.",
+                  "LEFT, 1\nTOP, 2, 2, -0.01\n");
+  DAT t = job_table(&j, "GOALS", -1);
+  const double at = dat_at(&t, 1, "value");
+  ck_assert_double_eq_tol(dat_at(&t, 0, "value"), at, 1e-3 * at);
+}
+
 /* On elements that no smaller mean fits, the largest pressure may be that of
  * its node. */
 TEST(peaks_on_few_elements_have_that_of_their_node_in_the_band) {
@@ -402,26 +413,30 @@ TEST(peaks_on_few_elements_have_that_of_their_node_in_the_band) {
 }
 
 /* In space the area is larger by what of it is behind each plane: as much as
- * the pressure there is of the largest. */
+ * the pressure there is of the largest. A wall at x = 0 has no part in it. */
 TEST(radius_of_a_zone_that_planes_halve) {
   static const char words[] = "box 8 8 3 1 1 0.5";
   static const char gap[] = "0.1*((x-0.7)^2+y^2)";
   static const char hold[] = "FRONT, 2\nTOP, 3, 3, -0.04\n";
-  job j = of_peak(words, gap, "", hold);
+  static const char wall[] =
+      "\n*OBSTACLE, NAME=W, TYPE=PLANE\n0., 0., 0.\n1., 0., 0.\n"
+      "*CONTACT, NAME=W, GROUP=LEFT, OBSTACLE=W";
+  job j = of_peak(words, gap, wall, hold);
   dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
   const double value = dat_at(&t, 0, "value");
   double area = 0.0, most = 0.0, at[2] = {0.0};
   for (int i = 0; i < c.n_row; ++i) {
     const double p = dat_at(&c, i, "pressure");
+    if (dat_at(&c, i, "x") < 0.001) continue;
     if (p > 0.0) area += fabs(dat_at(&c, i, "f_n")) / p;
     most = fmax(most, p);
     if (dat_at(&c, i, "x") > 0.999) at[0] = fmax(at[0], p);
     if (dat_at(&c, i, "y") < 0.001) at[1] = fmax(at[1], p);
   }
   ck_assert(at[0] > 0.05 * most && at[0] < 0.9 * most);
-  PRINTED(
-      radius, ", RADIUS=%.15g",
-      0.5 * sqrt(area / M_PI * (1.0 + at[0] / most) * (1.0 + at[1] / most)));
+  PRINTED(radius, ", RADIUS=%.15g%s",
+          0.5 * sqrt(area / M_PI * (1.0 + at[0] / most) * (1.0 + at[1] / most)),
+          wall);
   dat_free(&t);
   dat_free(&c);
   job_end(&j);

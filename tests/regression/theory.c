@@ -244,7 +244,7 @@ TEST(average_raises_the_guaranteed_limit) {
 TEST(two_contacts_have_rows_of_their_own) {
   static const char cards[] =
       "*CONTACT, NAME=WALL, GROUP=LEFT, OBSTACLE=O\n"
-      "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.1\n"
+      "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n\"0.1+0.01*y\"\n"
       "*FRICTION, CONTACT=WALL, LAW=COULOMB\n0.05\n"
       "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 1, -0.01\n"
       "TOP, 2, 2, -0.02\n*ACCURACY, THEORY=YES\n*END STEP\n";
@@ -256,6 +256,7 @@ TEST(two_contacts_have_rows_of_their_own) {
   ck_assert_int_eq(count(&j, "lst", "\n  (all)  "), 2);
   ck_assert_double_ge(all, 0.999999 * fmax(foot, wall));
   ck_assert_double_gt(foot, wall);
+  ck_assert_double_eq_tol(result(&j, "mu_unique", 0) * foot, 0.1, 1e-9);
   ck_assert_double_eq_tol(result(&j, "mu_unique", 2) * all, 0.1, 1e-9);
 }
 

@@ -91,17 +91,16 @@ TEST(elements_inside_out_are_told) {
 /* Pressed on a cylinder or a plane, then the one or the other moves aside by
  * less or more than a face: a plane is the same everywhere, an obstacle that
  * moves is met where it is, and along a zone of 0.4 to each side a slip of 0.07
- * changes the gap by (0.07 / 0.4)^2 = 3 % of what it varies by. */
+ * changes the gap by (0.07 / 0.4)^2 = 3 % of what it varies by; along a shorter
+ * one by more. */
 TEST(slip_along_a_bent_obstacle_is_told) {
   static const struct {
     int n, radius; /* segments; 0: a plane */
     double body, obstacle;
     int told;
-  } rows[] = {{4, 1, 0.24, 0.0, 0},
-              {4, 1, 0.35, 0.0, 1},
-              {4, 1, 0.0, -0.35, 0},
-              {4, 0, 0.35, 0.0, 0},
-              {16, 100, 0.07, 0.0, 0}};
+  } rows[] = {{4, 1, 0.24, 0.0, 0},  {4, 1, 0.35, 0.0, 1},
+              {4, 1, 0.0, -0.35, 0}, {4, 0, 0.35, 0.0, 0},
+              {16, 1, 0.07, 0.0, 1}, {16, 100, 0.07, 0.0, 0}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
     char shape[40] = "PLANE";
     JOB j = job_begin("aside");

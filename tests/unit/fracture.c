@@ -231,6 +231,25 @@ TEST(factors_turn_with_the_crack) {
     }
 }
 
+/* The same in any unit of length: the domains go by squares of lengths. */
+TEST(factors_do_not_follow_the_unit_of_length) {
+  for (int i = 0; i < 2; ++i) {
+    const double unit = i == 0 ? 1e-3 : 1e3;
+    CRACK_SCENE s;
+    tip_field f = tip_of(&strain_steel, 1.0, -0.4);
+    mesh *m = square(16, edge);
+    for (int k = 0; k < 2 * m->n_node; ++k) m->x[k] *= unit;
+    m->size *= unit;
+    f.tip[0] = f.tip[1] = 0.5 * unit;
+    scene_start(&s, m, 0.5 * unit, &strain_steel, NULL);
+    scene_move(&s, tip_displacement, &f);
+    answer a = ask(&s);
+    ck_assert_double_eq_tol(a.at[0].K[0], 1.0, 3e-3);
+    ck_assert_double_eq_tol(a.at[0].K[1], -0.4, 3e-3);
+    drop(&a);
+  }
+}
+
 /* ---- tractions on the lips -------------------------------------------------
  */
 

@@ -79,7 +79,6 @@ status theorems_path_rate(const stress_map *map, double *rate) {
   PASS(map->apply(map->ctx, &first));
   for (int k = 0; k < PASSES && calm < 3 && first > 0.0; ++k) {
     PASS(map->apply(map->ctx, rate));
-    if (!(*rate > 0.0)) break;
     calm = fabs(*rate - last) <= STEADY * *rate ? calm + 1 : 0;
     last = *rate;
   }
