@@ -318,7 +318,8 @@ static void check_error(const both *b, const double *rest, const double *w,
   FREED double *none = get(b->n), *left = get(b->n);
   OWNED char *touches = memory_new(b->n, 1);
   double energy = 0;
-  for (int i = 0; i < b->s->surface.n; ++i) touches[b->s->surface.node_id[i]] = 1;
+  for (int i = 0; i < b->s->surface.n; ++i)
+    touches[b->s->surface.node_id[i]] = 1;
   domain_residual(d, w, none, left);
   for (size_t q = 0; q < b->n; ++q) {
     energy -= left[q] * w[q];
