@@ -479,7 +479,8 @@ TEST(defects_of_triplets_are_named) {
     replace(name, 0, wrong[k].n, wrong[k].value);
     answer a = read_as(EXCHANGE_FCLIB);
     ck_assert_int_eq(a.st, ERR_DECK);
-    ck_assert_msg(strstr(a.text, wrong[k].told) != NULL, "%s: %s", name, a.text);
+    ck_assert_msg(strstr(a.text, wrong[k].told) != NULL, "%s: %s", name,
+                  a.text);
   }
   leave();
 }

@@ -334,8 +334,7 @@ TEST(states_within_a_step_have_its_rates_at_both_ends) {
     flow_state_copy(&b.x, &b.old, &old);
     point_body_run(&b, s, theta_of(s), dt, 1, NULL);
     const scheme_step p = {.t = dt, .dt = dt, .theta = theta_of(s)};
-    const scheme_call call = {&b.x, &p,     NULL,     b.work,
-                              &old, &b.now, &b.result};
+    const scheme_call call = {&b.x, &p, NULL, b.work, &old, &b.now, &b.result};
     double lost;
     mid.t = 0.3 * dt;
     ck_assert_int_eq(s->between(&call, &mid), OK);
