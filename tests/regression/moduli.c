@@ -233,6 +233,38 @@ TEST(inelastic_strains_under_changing_moduli) {
     }
 }
 
+/* One section, 0 degrees below and 200 above, nu = 0, pulled by 200 for as long
+ * as its unit or relaxation time: e^i = 200/E1 (1 - exp(-1)) or 200/E, each of
+ * its own temperature. */
+TESTS(points_of_one_section_have_their_temperatures, 2) {
+  JOB j = job_with(
+      "moduli", "tests/regression/mesh/layers.geo",
+      "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n2.E5, 0., 0.\n"
+      "1.E5, 0., 200.\n*INELASTIC, LAW=%s\n"
+      "*SOLID SECTION, ELSET=ALL, MATERIAL=M, TYPE=CPS3\n"
+      "*STEP\n*STATIC\n" SYMMETRY
+      "*DSLOAD\nTOP, TY, 200.\n"
+      "*TEMPERATURE\nSOFT, 0.\nHARD, 200.\n*END STEP\n"
+      "*STEP\n*VISCO, INTEGRATOR=RK4\n0.1, 1.\n"
+      "*PRINT, ELEMENTS, ENERGY, FREQUENCY=0\n*END STEP\n",
+      _i == 0 ? "ZENER\n1.E5, 1.E5, 0.\n5.E4, 5.E4, 200." : "MAXWELL\n1.");
+  CK_EXIT(job_run(&j, "--no-timing"), 0, j);
+  DAT d = job_table(&j, "ELEMENTS", 0);
+  const double late = 1 - exp(-1.0), ei = _i == 0 ? 2e-3 * late : 1e-3;
+  int n[2] = {0, 0};
+  for (int i = 0; i < d.n_row; ++i) {
+    const int hot = dat_at(&d, i, "y") > 0.5;
+    ck_assert_double_eq_tol(dat_at(&d, i, "strain_yy"),
+                            (hot ? 2 : 1) * (1e-3 + ei), 1e-8);
+    ++n[hot];
+  }
+  ck_assert(n[0] > 0 && n[1] > 0);
+  ck_assert_double_eq_tol(job_value(&j, "ENERGY", 0, "inelastic_stored"),
+                          _i == 0 ? 0.3 * late * late : 0, 1e-6);
+  balanced(&j, 0);
+}
+
 /* The exponential integrator is not exact for them; sets in the wrong order,
  * one without its temperature, no temperature at all. */
 TEST(what_is_refused_or_told) {

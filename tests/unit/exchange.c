@@ -460,6 +460,31 @@ TEST(defect_names_file_and_dataset) {
   leave();
 }
 
+/* Indices of a matrix of triplets, which no line of "p" counts. */
+TEST(defects_of_triplets_are_named) {
+  static const struct {
+    const char *item;
+    int n, value;
+    const char *told;
+  } wrong[] = {{"p", 4, 0, "W/p has 4"},
+               {"p", 5, 2, "W/p, item 0 = 2"},
+               {"p", 5, -1, "W/p, item 0 = -1"},
+               {"i", 4, 0, "W/i has 4"},
+               {"i", 5, 2, "W/i, item 0 = 2"}};
+  double W[4] = {2, 1, 1, 2}, q[2] = {1, 1}, mu[1] = {0.3};
+  enter();
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    fclib_local(path, STORE_TRIPLET, 2, 1, W, q, mu);
+    PRINTED(name, "/fclib_local/W/%s", wrong[k].item);
+    replace(name, 0, wrong[k].n, wrong[k].value);
+    answer a = read_as(EXCHANGE_FCLIB);
+    ck_assert_int_eq(a.st, ERR_DECK);
+    ck_assert_msg(strstr(a.text, wrong[k].told) != NULL, "%s: %s", name,
+                  a.text);
+  }
+  leave();
+}
+
 TEST(what_is_not_available_is_said) {
   static const char *const names[] = {"/fclib_local_rolling/spacedim",
                                       "/fclib_global_rolling/spacedim"};

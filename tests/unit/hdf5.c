@@ -306,6 +306,27 @@ TEST(room_not_used_is_cut_at_the_end) {
   ck_assert(t[6] == 3.5 && isnan(t[7]) && isnan(t[49]));
 }
 
+/* All records are there, of the end alone, and not all rows. */
+TEST(rows_not_used_are_cut_at_the_end) {
+  int dims[2];
+  FOLDER(dir);
+  MADE_UP *made = made_up_new(2, 2, 8);
+  output_options o = plain;
+  hdf5_file *h = NULL;
+  o.dir = dir;
+  made->steps[0].output.frequency = 100;
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
+  for (int i = 1; i <= 5; ++i) {
+    made_up_advance(made, i);
+    made->s.end_of_step = i == 5;
+    ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
+  }
+  ck_assert_int_eq(hdf5_close(h, 1), OK);
+  rows_are(dir, 5);
+  FREED double *total = dataset(dir, "/fields/total", dims);
+  ck_assert_int_eq(dims[0], 1);
+}
+
 TEST(frequency_chooses_the_records) {
   int dims[2];
   FOLDER(dir);

@@ -302,6 +302,8 @@ TEST(zones_have_one_temperature) {
                {"", "BODY, 20., A\nLEFT, 20., B\n", 2},
                {"", "BODY, 20.\nLEFT, 20., B\n", 2},
                {"", "BODY, \"x\"\nLEFT, \"y\"\n", 2},
+               {"", "LEFT, 20.\n", 2},
+               {"LEFT, 5.\n", "BODY, 20.\n", 2},
                {"BODY, 5.\nLEFT, 5.\n", "BODY, 20.\n", 1},
                {"BODY, 5.\nLEFT, 6.\n", "BODY, 20.\n", 2},
                {"BODY, 5.\nLEFT, 6.\n", "BODY, 20.\nLEFT, 7.\n", 2}};
@@ -316,8 +318,8 @@ TEST(zones_have_one_temperature) {
             "*EXPANSION\n1E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
             "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n"
             "*AMPLITUDE, NAME=B\n0., 0., 1., 0.5\n"
-            "%s%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n"
-            "*TEMPERATURE\n%s*END STEP\n",
+            "%s%s*STEP\n*STATIC\n*TEMPERATURE\n%s"
+            "*BOUNDARY\nTOP, 1, 2\n*END STEP\n",
             cases[k].initial[0] != '\0'
                 ? "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
                 : "",

@@ -1,4 +1,5 @@
 /* src/fem: the condensed stiffness as an operator, against its entries. */
+#include "fem/element.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"
@@ -308,13 +309,36 @@ TESTS(loads_and_recovery_are_the_same, SCENES) {
   both_free(&b);
 }
 
-/* Of bodies that supports hold: inv(A) d, its energy, errors of a residual. */
+/* The error w of a residual, where the supports stay in place: the forces of
+ * its strains are "rest" inside, and its energy that of them. */
+static void check_error(const both *b, const double *rest, const double *w,
+                        double square) {
+  const domain *d = &b->s->d;
+  const int dim = b->s->m->dim;
+  FREED double *none = get(b->n), *left = get(b->n);
+  OWNED char *touches = memory_new(b->n, 1);
+  double energy = 0;
+  for (int i = 0; i < b->s->surface.n; ++i)
+    touches[b->s->surface.node_id[i]] = 1;
+  domain_residual(d, w, none, left);
+  for (size_t q = 0; q < b->n; ++q) {
+    energy -= left[q] * w[q];
+    if (touches[q / dim]) continue;
+    ck_assert_double_eq_tol(d->fixed[q] ? w[q] : -left[q],
+                            d->fixed[q] ? 0 : rest[q], 1e-10);
+  }
+  ck_assert_double_eq_tol(square / energy, 1, 1e-10);
+}
+
+/* Of bodies that supports hold: inv(A) d, its energy, errors of a residual,
+ * whatever was prescribed before. */
 TESTS(energies_and_errors_are_the_same, HELD) {
   both b = both_new(_i);
   const size_t n = b.n, m = (size_t)b.m;
   double *rest = numbers(n, 3), *d = numbers(m, 5), square[2][3];
   double *u[2] = {get(m), get(m)}, *w[2] = {get(n), get(n)},
          *v[2] = {get(n), get(n)};
+  FREED double *f = get(m);
   OWNED unsigned char *held = memory_new(m, 1);
   condensed *c[2] = {b.dense, b.sparse};
   for (size_t i = 0; i < m; ++i) {
@@ -324,6 +348,7 @@ TESTS(energies_and_errors_are_the_same, HELD) {
   for (int k = 0; k < 2; ++k) {
     ck_assert_int_eq(condensed_force_energy(c[k], d, &square[k][0]), OK);
     ck_assert_int_eq(condensed_untouched(c[k], d, u[k]), OK);
+    ck_assert_int_eq(condense_load(c[k], rest, rest, f), OK);
     ck_assert_int_eq(condensed_misfit(c[k], rest, d, w[k], &square[k][1]), OK);
     ck_assert_int_eq(
         condensed_misfit_held(c[k], rest, d, held, v[k], &square[k][2]), OK);
@@ -331,6 +356,8 @@ TESTS(energies_and_errors_are_the_same, HELD) {
   same(m, u[0], u[1], 1e-11);
   same(n, w[0], w[1], 1e-11);
   same(n, v[0], v[1], 1e-11);
+  check_error(&b, rest, w[0], square[0][1]);
+  check_error(&b, rest, v[0], square[0][2]);
   for (int q = 0; q < 3; ++q)
     ck_assert_double_eq_tol(square[0][q] / square[1][q], 1, 1e-11);
   free(rest);

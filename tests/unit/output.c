@@ -10,6 +10,7 @@
 
 #include <ctype.h>
 #include <fcntl.h>
+#include <hdf5.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -309,12 +310,26 @@ TEST(cost_is_shown_unless_left_out) {
   free(text);
 }
 
+/* Rows of /history/time in block.h5. */
+static long rows_of(const char *dir) {
+  PRINTED(path, "%s/block.h5", dir);
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  hid_t set = H5Dopen2(file, "/history/time", H5P_DEFAULT);
+  hid_t space = H5Dget_space(set);
+  const long n = (long)H5Sget_simple_extent_npoints(space);
+  H5Sclose(space);
+  H5Dclose(set);
+  H5Fclose(file);
+  return n;
+}
+
 TEST(xdmf_names_every_record_of_its_file) {
   char name[80];
   FOLDER(dir);
   MADE_UP *made = made_up_new(3, 2, 3);
   output_options o = quiet(dir);
   ck_assert_int_eq(run(made, &o, 5), OK);
+  ck_assert_int_eq(rows_of(dir), 5);
   char *text = folder_file(dir, "block.xdmf", NULL);
   for (int i = 1; i <= 5; ++i) {
     snprintf(name, sizeof name, ">block.h5:/fields/u/%05d<", i);
@@ -336,6 +351,8 @@ TEST(xdmf_names_every_record_of_its_file) {
       text, "Name=\"stress\" AttributeType=\"Tensor6\" Center=\"Cell\""));
   ck_assert_ptr_null(strstr(text, dir));
   ck_assert_ptr_null(strstr(text, "/00006"));
+  ck_assert_ptr_nonnull(strstr(text, "<Grid Name=\"contact\" GridType=\"Coll"));
+  ck_assert_ptr_nonnull(strstr(text, "<Grid Name=\"body\" GridType=\"Coll"));
   ck_assert_ptr_nonnull(strstr(text, "</Xdmf>"));
   free(text);
   text = folder_file(dir, "block.contact.xdmf", NULL);

@@ -69,7 +69,7 @@ static void make_row(row_of_bodies *t) {
     double *m = t->mass + 2 * b + ROWS * 2 * b;
     m[0] = 1.0 + case_random(&seed);
     m[ROWS + 1] = 1.0 + case_random(&seed);
-    m[1] = m[ROWS] = 0.8 * case_random(&seed);
+    m[1] = m[ROWS] = 1.6 * case_random(&seed) - 0.8;
   }
   for (int j = 0; j < M; ++j)
     for (int i = 1; i < 3; ++i)

@@ -325,6 +325,45 @@ TEST(a_rejected_step_leaves_nothing_behind) {
   }
 }
 
+/* Hermite's cubic at 0.3 of a step, of values u, v and slopes du, dv there. */
+static double cubic(double u, double v, double du, double dv) {
+  const double s = 0.3;
+  return u + s * s * (3 - 2 * s) * (v - u) + s * (1 - s) * (1 - s) * du -
+         s * s * (1 - s) * dv;
+}
+
+/* A held stress that relaxes, by its factor and its rates at both ends; where
+ * steps are exact, exactly. What is lost by its power there. */
+TEST(states_within_a_step_have_its_rates_at_both_ends) {
+  const double dt = 0.4, z = 0.2;
+  for (int i = 0; scheme_list[i] != NULL; ++i) {
+    const scheme *s = scheme_list[i];
+    start("MAXWELL", "2.", &held);
+    OWNS(b.parts);
+    flow_state old = {0}, mid = {0};
+    ck_assert_int_eq(flow_state_new(&b.x, &old), OK);
+    ck_assert_int_eq(flow_state_new(&b.x, &mid), OK);
+    flow_state_copy(&b.x, &b.old, &old);
+    point_body_run(&b, s, theta_of(s), dt, 1, NULL);
+    const scheme_step p = {.t = dt, .dt = dt, .theta = theta_of(s)};
+    const scheme_call call = {&b.x, &p, NULL, b.work, &old, &b.now, &b.result};
+    double lost;
+    mid.t = 0.3 * dt;
+    ck_assert_int_eq(s->between(&call, &mid), OK);
+    ck_assert_int_eq(scheme_dissipated(&call, mid.t, &lost), OK);
+    const double f = factor_of(s, z), first = 2 * z * energy(&old);
+    const double g = s->linear_only ? exp(-0.3 * z) : cubic(1, f, -z, -f * z);
+    for (int c = 0; c < 6; ++c) {
+      ck_assert_double_eq_tol(mid.ei[c], held.e[c] * (1 - g), 1e-16);
+      if (s->linear_only)
+        ck_assert_double_eq_tol(mid.sigma[c], g * old.sigma[c], 1e-14);
+    }
+    ck_assert_double_eq_tol(
+        lost, cubic(0, b.result.dissipated, first, f * f * first), 1e-15);
+    point_body_free(&b);
+  }
+}
+
 /* Units of laws side by side: places in one list, and the most of any point. */
 TEST(points_have_room_for_the_units_of_their_law) {
   flow_kind kind[] = {{.n_alpha = 4}, {.n_alpha = 7}, {.n_alpha = 1}};

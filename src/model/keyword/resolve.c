@@ -280,7 +280,7 @@ static status carry_loads(const model *m, const step *old, step *s,
 static int same_value(const load *a, const load *b) {
   return a->value.formula == NULL && b->value.formula == NULL &&
          a->value.number == b->value.number &&
-         a->amplitude_name == b->amplitude_name;
+         a->value.factor == b->value.factor;
 }
 
 /* Within one step the last card of the same load counts. */
@@ -302,8 +302,8 @@ static void drop_repeated(const model *m, load_list *own) {
 
 static status resolve_loads(model *m, const step *old, step *s) {
   load_list all = {0};
-  drop_repeated(m, &s->loads);
   for (int i = 0; i < s->loads.n; ++i) start_load(m, s, &s->loads.item[i]);
+  drop_repeated(m, &s->loads);
   PASS(carry_loads(m, old, s, &all));
   for (int i = 0; i < s->loads.n; ++i) {
     PASS_GROW(all.item, all.n, all.cap);
