@@ -315,6 +315,25 @@ TEST(temperatures_that_vary_within_elements) {
   }
 }
 
+/* A disc that a temperature linear in y bends without stress onto an obstacle
+ * of that shape, and a pressure: with hardly any friction as without. */
+TESTS(energy_of_a_disc_that_heat_bends, 2) {
+  JOB j = job_begin("block");
+  body_write_mesh(&j, "rect 12 12 1 1 alternate", &(mesh_change){.scale = 1.0});
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*EXPANSION\n1e-3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+            "TYPE=CAX3\n*OBSTACLE, NAME=O, TYPE=GAP\n\"-0.01*x^2\"\n*CONTACT, "
+            "NAME=C, GROUP=BOTTOM, OBSTACLE=O\n*FRICTION, CONTACT=C, "
+            "LAW=COULOMB\n%g\n" ENERGY
+            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+            "*DSLOAD\nTOP, P, 1.\n*TEMPERATURE\nBODY, \"-20*y\"\n"
+            "*PRINT, GOALS\n*END STEP\n",
+            _i * 1e-6);
+  CK_EXIT(job_run(&j, ""), 0, j);
+  goal_check_row(&j, 0, M_PI_2 * 1e-3, 0.9, 1.15, 1.0);
+}
+
 /* A prism from z = 0 to 1 with an interface at y = 1/2, in the middle at
  * "height". */
 #define PRISM                                                                  \
