@@ -283,7 +283,9 @@ TESTS(ring_on_a_shaft, 5) {
       "*GOAL, NAME=ENERGY, QUANTITY=ENERGY\n%s*STEP\n*STATIC\n"
       "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n%s%s*PRINT, GOALS\n*END STEP\n",
       moved ? "" : "*OBSTACLE, NAME=S, TYPE=", on[_i],
-      moved ? "" : "*GOAL, NAME=X, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n",
+      moved ? ""
+            : "*GOAL, NAME=X, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+              "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=C\n",
       solid ? "FACES, 3\n" : "",
       moved ? "INNER, 1, 1, \"1E-4*x/sqrt(x^2+y^2)\"\n"
               "INNER, 2, 2, \"1E-4*y/sqrt(x^2+y^2)\"\n"
@@ -294,6 +296,8 @@ TESTS(ring_on_a_shaft, 5) {
   check_goal(&t, 1, 0.2 * p * 100.0, off);
   check_goal(&t, 2, wide * 0.5e-4 * p * 100.0 * M_PI_2, off);
   if (!moved) check_goal(&t, 3, wide * p * 100.0, off);
+  if (!moved && !solid)
+    ck_assert_double_eq_tol(dat_at(&t, 4, "value"), M_PI_2, 1e-3);
 }
 
 /* A block with a round foot of radius 2 that is pressed flat on a plane: its

@@ -347,6 +347,20 @@ TEST(friction_that_may_stop_is_not_reliable) {
   ck_assert(!goal_has_verdict(&j, "T", "reliable"));
 }
 
+/* A heavy block slides to both sides of a plane of symmetry, at which it sticks
+ * within an edge: the mean stress is -1.4973 by 64 times as many elements. */
+TEST(friction_that_may_stop_at_a_plane_of_symmetry) {
+  JOB j = body_of("rect 8 4 2 1 alternate", PLANE CONTACT
+                  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.05\n"
+                  "*GOAL, NAME=S, QUANTITY=STRESS, COMPONENT=XX, GROUP=BODY\n"
+                  "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1\n"
+                  "*DLOAD\nBODY, BY, -30.\n");
+  DAT t = job_table(&j, "GOALS", -1);
+  const double band = dat_at(&t, 0, "band");
+  ck_assert_double_eq_tol(dat_at(&t, 0, "corrected"), -1.4973, band);
+  ck_assert_double_lt(band, 0.02);
+}
+
 /* With ZONE=CONTACT friction ends with the contact, within an edge, where it is
  * 8.4/2. Its force is mu times the integral of R(p) over the contact, by
  * quadrature of the pressures of 192 edges. */

@@ -303,16 +303,65 @@ TEST(temperatures_that_vary_within_elements) {
        SIDES "TOP, 2\n*TEMPERATURE\nSOFT, \"20*(1-x)\"\n"
              "HARD, \"20*(1-x)\"\n",
        {{1, 0.026 / 3.0, 0.9, 1.1, 0.5}}},
+      {{1.0, 1e-3, "CAX3", NULL},
+       SIDES "TOP, 2\n*DLOAD\nSOFT, BX, \"100*x\"\nHARD, BX, \"100*x\"\n"
+             "*TEMPERATURE\nSOFT, \"20*(1-x)\"\nHARD, \"20*(1-x)\"\n",
+       {{5, 1.4336633, 0.9, 1.1, 1.5}}},
       {{2.0, 1e-3, "CAX3", NULL},
        WALLS WAVE SLOPES,
        {{0, -0.0043053987, 0.9, 1.1, 0.5}, {2, 0.00088629567, 0.5, 1.5, 3.0}}}};
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 5; ++k) {
     JOB j = of_layers(rows[k].of, rows[k].cards);
     for (int i = 0; i < 3 && rows[k].is[i].wide > 0.0; ++i) {
       const expected *e = &rows[k].is[i];
       goal_check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
     }
   }
+}
+
+/* A disc that a temperature linear in y bends without stress onto an obstacle
+ * of that shape, and a pressure: with hardly any friction as without. */
+TESTS(energy_of_a_disc_that_heat_bends, 2) {
+  JOB j = job_begin("block");
+  body_write_mesh(&j, "rect 12 12 1 1 alternate", &(mesh_change){.scale = 1.0});
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*EXPANSION\n1e-3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+            "TYPE=CAX3\n*OBSTACLE, NAME=O, TYPE=GAP\n\"-0.01*x^2\"\n*CONTACT, "
+            "NAME=C, GROUP=BOTTOM, OBSTACLE=O\n*FRICTION, CONTACT=C, "
+            "LAW=COULOMB\n%g\n" ENERGY
+            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+            "*DSLOAD\nTOP, P, 1.\n*TEMPERATURE\nBODY, \"-20*y\"\n"
+            "*PRINT, GOALS\n*END STEP\n",
+            _i * 1e-6);
+  CK_EXIT(job_run(&j, ""), 0, j);
+  goal_check_row(&j, 0, M_PI_2 * 1e-3, 0.9, 1.15, 1.0);
+}
+
+/* A cylinder of which the hoop is softer than the radius, under a pressure, or
+ * expands otherwise by heat: stresses are infinite on the axis. With nu = 0 the
+ * first moves by r^k, k^2 the ratio of the moduli (Lekhnitskii), the second by
+ * r log r. */
+TESTS(materials_that_differ_round_the_axis, 2) {
+  static const struct {
+    double hoop, energy;
+    const char *alpha, *cards;
+  } rows[] = {
+      {400., 0.49672941, "0., 0., 0.", "*DSLOAD\nRIGHT, P, 10.\n"},
+      {1000., 0.039269908, "1E-3, 0., 0.", "*TEMPERATURE\nBODY, 10.\n"}};
+  JOB j = job_begin("block");
+  body_write_mesh(&j, "rect 12 12 1 1 alternate", &(mesh_change){.scale = 1.0});
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC, TYPE=ORTHO\n"
+            "1000., 1000., %g, 0., 0., 0., 500., 500.,\n500.\n*EXPANSION, "
+            "TYPE=ORTHO\n%s\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+            "TYPE=CAX3\n" ENERGY
+            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+            "BOTTOM, 2\n%s*PRINT, GOALS\n*END STEP\n",
+            rows[_i].hoop, rows[_i].alpha, rows[_i].cards);
+  CK_EXIT(job_run(&j, ""), 0, j);
+  ck_assert(goal_has_verdict(&j, "E", "support_end"));
+  goal_check_row(&j, 0, rows[_i].energy, 0.3, 1.1, 4.0);
 }
 
 /* A prism from z = 0 to 1 with an interface at y = 1/2, in the middle at

@@ -26,7 +26,9 @@
  * Strains without stress e0 count with z: its stress s_z is that of u_h, E (e -
  * e0), less that of y, and the same holds for it. Where they vary within an
  * element by d0 from their mean there, the error e_z of its stress has a part
- * E d0, which does no work on the mean: less the integral of e_z : d0.
+ * E d0, which does no work on the mean: less the integral of e_z : d0. Where
+ * the hoop strains of s_y, by the residual of z those of s_u, vary in an
+ * axisymmetric element, they do work on it.
  */
 #include "accuracy/goal/goal.h"
 
@@ -536,6 +538,21 @@ static double axi_residual(const goal_estimator *e, int elem_id,
   return sum;
 }
 
+/* The hoop strain of v[2*n_node] at a point of an axisymmetric element less
+ * that at its mean radius; r: of the point. */
+static double axi_hoop(const mesh *m, int elem_id, int point, const double *v,
+                       double *r) {
+  const int *node = m->elem + 3 * elem_id;
+  double at = 0.0, mean = 0.0;
+  *r = 0.0;
+  for (int a = 0; a < 3; ++a) {
+    at += AXI_RULE[a == point] * v[2 * node[a]];
+    *r += AXI_RULE[a == point] * m->x[2 * node[a]];
+    mean += v[2 * node[a]] / 3.0;
+  }
+  return at / *r - mean / radius_of(m, elem_id);
+}
+
 /* At a point of an axisymmetric element: what is recovered of a stress less
  * that of v[2*n_node], whose hoop strain varies there and is no error. */
 static double axi_difference(const goal_estimator *e, int elem_id, int point,
@@ -543,18 +560,14 @@ static double axi_difference(const goal_estimator *e, int elem_id, int point,
   const mesh *m = e->s.d->mesh;
   const int *node = m->elem + 3 * elem_id;
   const double *E = e->s.d->E + 16 * e->s.d->section_id[elem_id];
-  double at[2] = {0.0}, mean[2] = {0.0};
-  for (int i = 0; i < 4; ++i) d[i] = -f->element[4 * elem_id + i];
-  for (int a = 0; a < 3; ++a) {
-    const double phi = AXI_RULE[a == point];
-    const double own[2] = {v[2 * node[a]], m->x[2 * node[a]]};
-    for (int k = 0; k < 2; ++k) at[k] += phi * own[k];
-    for (int k = 0; k < 2; ++k) mean[k] += own[k] / 3.0;
-    for (int i = 0; i < 4; ++i) d[i] += phi * f->node[4 * node[a] + i];
+  double r;
+  const double hoop = axi_hoop(m, elem_id, point, v, &r);
+  for (int i = 0; i < 4; ++i) {
+    d[i] = -f->element[4 * elem_id + i] - E[i + 8] * hoop;
+    for (int a = 0; a < 3; ++a)
+      d[i] += AXI_RULE[a == point] * f->node[4 * node[a] + i];
   }
-  for (int i = 0; i < 4; ++i)
-    d[i] -= E[i + 8] * (at[0] / at[1] - mean[0] / mean[1]);
-  return at[1];
+  return r;
 }
 
 /* Integral of d_u' inv(E) d_w over an axisymmetric element; that of d_u' inv(E)
@@ -607,6 +620,24 @@ static double eigen_product(const goal_estimator *e, int elem_id,
          space_product(e->recovery, elem_id, u, &eigen, &square);
 }
 
+/* Less the integral of the stress of v[2*n_node] by what its hoop strain varies
+ * : d0. */
+static double axi_varied(const goal_estimator *e, int elem_id,
+                         const double *v) {
+  const mesh *m = e->s.d->mesh;
+  const int *node = m->elem + 3 * elem_id;
+  double sum = 0.0;
+  if (!is_axi(e, elem_id) || e->eigen == NULL) return 0.0;
+  for (int p = 0; p < 3; ++p) {
+    double r, d0 = -e->eigen[4 * elem_id + 2];
+    const double hoop = axi_hoop(m, elem_id, p, v, &r);
+    for (int a = 0; a < 3; ++a)
+      d0 += AXI_RULE[a == p] * e->node_eigen[4 * node[a] + 2];
+    sum -= r * hoop * d0;
+  }
+  return sum * element_weight(e->s.d, elem_id) / (3.0 * radius_of(m, elem_id));
+}
+
 /* Returns |e_u| |e_y| of the element. */
 static double add_element(goal_estimator *e, int elem_id, const double *y,
                           const double *tau, int of_u, goal_estimate *out) {
@@ -623,9 +654,12 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
                           : product;
   if (of_u) {
     const double varied = eigen_product(e, elem_id, &u, &of_y);
+    const double of_w = axi_varied(e, elem_id, y);
+    const double of_own = axi_varied(e, elem_id, e->s.u);
     product = like;
-    out->error += 0.5 * e->by_given * (given + product + varied) +
-                  0.5 * (1.0 - e->by_given) * (residual + own);
+    out->error +=
+        0.5 * (e->by_given * (given + product + varied + of_w) +
+               (1.0 - e->by_given) * (residual + own + of_own) + of_own);
     out->magnitude += fabs(given) + fabs(varied);
   } else {
     out->error += residual;

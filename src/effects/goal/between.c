@@ -183,13 +183,19 @@ static void find_rises(const run *r, const goal_surface *s, const int *where,
   }
 }
 
+/* 1: a closed node of a line in a plane of symmetry, which has no friction. */
+static int is_in_plane(const run *r, int q) {
+  return r->msh->dim == 2 && r->result.contact[q] != CONTACT_OPEN &&
+         goal_is_mirrored(r, q);
+}
+
 /* 1: nodes q[2] of an edge slide, and one has the least slip of all round it,
- * so little that it may be zero next to it. */
+ * so little that it may be zero next to it, as in a plane of symmetry. */
 static int may_stop(const run *r, const int *q, const double *rise) {
   int halts = 0;
   for (int k = 0; k < 2; ++k) {
     const double slip = slip_of(r, q[k]);
-    if (!(slip > 0.0)) return 0;
+    if (!(slip > 0.0) && !is_in_plane(r, q[k])) return 0;
     halts |= slip < HALT * rise[q[k]];
   }
   return halts;

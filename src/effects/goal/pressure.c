@@ -28,10 +28,12 @@
 
 /* The derivative of J by a normal force at x. */
 typedef struct weight {
-  double (*at)(const struct weight *w, const double *x);
+  double (*at)(const struct weight *w, const double *x, double s);
   int dim, axi;
   double thickness;
   double origin[3], t[3]; /* m; unit tangent of a line */
+  const double *s;        /* [contact nodes] along a line, m; NULL: a disc */
+  double from;            /* s of the origin, m */
   double radius;          /* m */
   double plane[3];        /* of symmetry, by its coordinate, m; HUGE_VAL */
   double mirror[2];       /* planes of symmetry along a line, m; HUGE_VAL */
@@ -41,11 +43,9 @@ typedef struct weight {
   int n;                  /* closed nodes beyond x0 */
 } weight;
 
-/* Coordinate along the line, m. */
-static double along(const weight *w, const double *x) {
-  double d[3];
-  vector_of(w->dim, w->origin, x, d);
-  return dot(w->dim, d, w->t);
+/* Coordinate of a contact node along the line, from the origin, m. */
+static double along(const weight *w, int q) {
+  return w->s == NULL ? 0.0 : w->s[q] - w->from;
 }
 
 /* From a force to one of unit thickness, or of unit length round the axis. */
@@ -58,8 +58,7 @@ static double line_weight(double s, double radius) {
   return q > 0.0 ? 105.0 / 64.0 / radius * (1.0 - 3.0 * t * t) * q * q : 0.0;
 }
 
-static double on_line(const weight *w, const double *x) {
-  const double s = along(w, x);
+static double on_line(const weight *w, const double *x, double s) {
   double sum = line_weight(s, w->radius);
   for (int k = 0; k < 2; ++k)
     if (isfinite(w->mirror[k]))
@@ -87,8 +86,9 @@ static double image_of(const weight *w, const double *x, int image,
 }
 
 /* Of x and its images. */
-static double on_disc(const weight *w, const double *x) {
+static double on_disc(const weight *w, const double *x, double s) {
   double sum = 0.0, away[3];
+  (void)s;
   for (int image = 0; image < 1 << w->dim; ++image)
     sum += disc_weight(image_of(w, x, image, away), w->radius);
   return -sum;
@@ -99,8 +99,8 @@ static double beyond(const weight *w, double s) {
   return w->sign * s > w->most ? 0.0 : fmax(w->sign * (s - w->x0), 0.0);
 }
 
-static double at_end(const weight *w, const double *x) {
-  const double L = beyond(w, along(w, x));
+static double at_end(const weight *w, const double *x, double s) {
+  const double L = beyond(w, s);
   if (!(L > 0.0)) return 0.0;
   return -1.75 * (L * L / w->N1 - L * w->N2 / (w->N1 * w->N1)) *
          per_length(w, x);
@@ -119,7 +119,7 @@ static double add_nodes(const run *r, const goal_card *g, const weight *w,
   double sum = 0.0;
   for (int q = 0; q < r->nodes.n; ++q) {
     if (!is_on(r, g, q)) continue;
-    const double v = w->at(w, r->surface->x + dim * q);
+    const double v = w->at(w, r->surface->x + dim * q, along(w, q));
     if (psi != NULL) psi[dim * q] += v;
     sum += v * r->now.rc[dim * q];
   }
@@ -134,16 +134,17 @@ static double face_rest(const run *r, const weight *w, const int *q,
   const face_rule *rule = &mesh_face_rule[dim == 3];
   double sum = 0.0;
   for (int p = 0; p < rule->n; ++p) {
-    double b[3], x[3] = {0.0}, traction = 0.0, linear = 0.0;
+    double b[3], x[3] = {0.0}, s = 0.0, traction = 0.0, linear = 0.0;
     const double part = face_rule_point(rule, dim, p, b);
     for (int k = 0; k < dim; ++k) {
       const double *at = r->surface->x + dim * q[k];
       for (int c = 0; c < dim; ++c) x[c] += b[k] * at[c];
       traction += b[k] * r->now.rc[dim * q[k]] / r->surface->area[q[k]];
-      linear += b[k] * w->at(w, at);
+      linear += b[k] * w->at(w, at, along(w, q[k]));
+      s += b[k] * along(w, q[k]);
     }
     const double turn = w->axi ? 2.0 * M_PI * x[0] : w->thickness;
-    sum += part * measure * turn * traction * (w->at(w, x) - linear);
+    sum += part * measure * turn * traction * (w->at(w, x, s) - linear);
   }
   return sum;
 }
@@ -205,7 +206,8 @@ static int peak_of(const run *r, const goal_card *g) {
 typedef struct line {
   int n, peak; /* peak: place of the peak */
   int *node;   /* [n] */
-  double *s;   /* [n] m, from the peak */
+  double *s;   /* [n] along the faces from the peak, m */
+  double *at;  /* [contact nodes] the same by node; NAN: not on the line */
 } line;
 
 /* next[2*n]: the contact nodes next to each node of the line, or -1. */
@@ -223,43 +225,58 @@ static status find_next(const run *r, const goal_card *g, int *next) {
   return OK;
 }
 
-/* Appends the nodes from the peak on whose places go on in that sense: no
- * others of a curve that turns back. */
-static void follow(const run *r, const weight *w, const int *next, int peak,
-                   double sense, line *l) {
-  for (int q = peak, to = q; to >= 0; q = to) {
-    const double s = along(w, r->surface->x + 2 * q);
-    to = -1;
-    for (int k = 0; k < 2; ++k) {
-      const int other = next[2 * q + k];
-      if (other < 0) continue;
-      const double at = along(w, r->surface->x + 2 * other);
-      if (!(sense * (at - s) > 0.0)) continue;
-      to = l->node[l->n] = other;
-      l->s[l->n] = at;
-    }
-    l->n += to >= 0;
-  }
+/* From the second node on to the third, m; 0: none, or round a corner. */
+static double edge_on(const run *r, const int *v) {
+  static const double CORNER = 0.64; /* cosine, of 50 degrees */
+  const double *x = r->surface->x;
+  double d[2], e[2];
+  if (v[2] < 0) return 0.0;
+  vector_of(2, x + 2 * v[0], x + 2 * v[1], d);
+  vector_of(2, x + 2 * v[1], x + 2 * v[2], e);
+  const double to = norm(2, e);
+  return v[0] != v[1] && dot(2, d, e) < CORNER * norm(2, d) * to ? 0.0 : to;
 }
 
-static status line_new(const run *r, const goal_card *g, const weight *w,
-                       int peak, line *l) {
-  OWNED_NEW(int, next, 2 * r->nodes.n);
-  PASS_NEW_ALL(OF(l->node, r->nodes.n), OF(l->s, r->nodes.n));
-  PASS(find_next(r, g, next));
-  follow(r, w, next, peak, -1.0, l);
-  for (int k = 0; k < l->n / 2; ++k) {
-    const int node = l->node[k], last = l->n - 1 - k;
-    const double s = l->s[k];
-    l->node[k] = l->node[last];
-    l->s[k] = l->s[last];
-    l->node[last] = node;
-    l->s[last] = s;
+/* Goes on from the peak on both sides in turn, so that a closed curve has its
+ * ends opposite to the peak. */
+static void follow(const run *r, const int *next, int peak, line *l) {
+  const double *x = r->surface->x, *t = r->surface->frame + 4 * peak + 2;
+  const int *first = next + 2 * peak;
+  int v[2][3], end[2] = {r->nodes.n, r->nodes.n};
+  double d[2] = {0.0};
+  if (first[0] >= 0) vector_of(2, x + 2 * peak, x + 2 * first[0], d);
+  for (int k = 0; k < 2; ++k)
+    memcpy(v[k], (int[]){peak, peak, first[(dot(2, d, t) > 0.0) ^ k]},
+           sizeof v[k]);
+  l->at[l->node[end[0]] = peak] = 0.0;
+  for (int k = 0; v[0][2] >= 0 || v[1][2] >= 0; k = 1 - k) {
+    int *u = v[k];
+    const double to = edge_on(r, u);
+    if (!(to > 0.0) || !isnan(l->at[u[2]])) {
+      u[2] = -1;
+      continue;
+    }
+    end[k] += k == 0 ? -1 : 1;
+    l->node[end[k]] = u[2];
+    l->at[u[2]] = l->at[u[1]] + (k == 0 ? -to : to);
+    u[0] = u[1];
+    u[1] = u[2];
+    u[2] = next[2 * u[1] + (next[2 * u[1]] == u[0])];
   }
-  l->peak = l->n;
-  l->node[l->n] = peak;
-  l->s[l->n++] = along(w, r->surface->x + 2 * peak);
-  follow(r, w, next, peak, 1.0, l);
+  l->n = end[1] - end[0] + 1;
+  l->peak = r->nodes.n - end[0];
+  memmove(l->node, l->node + end[0], l->n * sizeof *l->node);
+}
+
+static status line_new(const run *r, const goal_card *g, int peak, line *l) {
+  const int n = r->nodes.n;
+  if (r->msh->dim == 3) return OK;
+  OWNED_NEW(int, next, 2 * n);
+  PASS_NEW_ALL(OF(l->node, 2 * n + 1), OF(l->s, n), OF(l->at, n));
+  PASS(find_next(r, g, next));
+  for (int q = 0; q < n; ++q) l->at[q] = NAN;
+  follow(r, next, peak, l);
+  for (int k = 0; k < l->n; ++k) l->s[k] = l->at[l->node[k]];
   return OK;
 }
 
@@ -309,8 +326,8 @@ static void refine_peak(const run *r, const line *l, weight *w) {
 static void set_mirrors(const run *r, const line *l, weight *w) {
   const int end[2] = {0, l->n - 1};
   for (int k = 0; k < 2; ++k)
-    w->mirror[k] =
-        goal_is_mirrored(r, l->node[end[k]]) ? l->s[end[k]] : HUGE_VAL;
+    w->mirror[k] = goal_is_mirrored(r, l->node[end[k]]) ? l->s[end[k]] - w->from
+                                                        : HUGE_VAL;
 }
 
 /* Behind a plane of symmetry a zone goes on as far as the pressure of its node
@@ -362,44 +379,44 @@ static void evaluate_mean(const goal_card *g, const weight *w,
 }
 
 /* The longest edge within the radius, and whether it is cut by an end of the
- * surface that carries; l->s is from the middle. */
+ * surface that carries. */
 static void evaluate_line(const run *r, const goal_card *g, const line *l,
                           const weight *w, goal_form *f) {
   double longest = 0.0;
   for (int k = 1; k < l->n; ++k)
-    if (l->s[k] > -within(w) && l->s[k - 1] < within(w))
+    if (l->s[k] - w->from > -within(w) && l->s[k - 1] - w->from < within(w))
       longest = fmax(longest, l->s[k] - l->s[k - 1]);
   evaluate_mean(g, w, r->surface->x + w->dim * l->node[l->peak], longest, f);
   for (int k = 0; k<l->n; k += l->n> 1 ? l->n - 1 : 1)
-    if (fabs(l->s[k]) < within(w) && is_closed(r, l, k) &&
+    if (fabs(l->s[k] - w->from) < within(w) && is_closed(r, l, k) &&
         !goal_is_mirrored(r, l->node[k]) && f->why == GOAL_RELIABLE)
       f->why = GOAL_NO_END;
 }
 
 /* Where the largest pressure may be infinite there is no peak. */
-static status place_on_line(const run *r, const goal_card *g, int peak,
-                            weight *w, goal_form *f) {
+static void place_on_line(const run *r, const goal_card *g, const line *l,
+                          weight *w, goal_form *f) {
   int first, last;
-  OWNED_PARTS(line, l, line_new(r, g, w, peak, &l));
-  const int mirrored = goal_is_mirrored(r, peak);
-  const int at_border = l.peak == 0 || l.peak == l.n - 1;
-  zone_of(r, &l, &first, &last);
-  w->radius = g->radius > 0.0 ? g->radius : half_of(r, &l, first, last);
+  double moved[2];
+  const int peak = l->node[l->peak], mirrored = goal_is_mirrored(r, peak);
+  const int at_border = l->peak == 0 || l->peak == l->n - 1;
+  zone_of(r, l, &first, &last);
+  w->radius = g->radius > 0.0 ? g->radius : half_of(r, l, first, last);
   if (at_border && !mirrored)
     f->why = GOAL_NO_PEAK;
   else if (last == first)
     f->why = GOAL_NO_ZONE;
   else if (!at_border && g->n_point == 0)
-    refine_peak(r, &l, w);
+    refine_peak(r, l, w);
   if (g->n_point > 0)
     for (int c = 0; c < w->dim; ++c) w->origin[c] = g->point[0][c];
-  const double moved = along(w, r->surface->x + w->dim * peak);
-  for (int k = 0; k < l.n; ++k) l.s[k] += moved;
-  set_mirrors(r, &l, w);
+  vector_of(2, r->surface->x + 2 * peak, w->origin, moved);
+  w->from = dot(2, moved, w->t);
+  w->s = l->at;
+  set_mirrors(r, l, w);
   w->at = on_line;
   if (w->axi) set_disc_of_axis(g, w, f);
-  evaluate_line(r, g, &l, w, f);
-  return OK;
+  evaluate_line(r, g, l, w, f);
 }
 
 /* ---- a disc in space ----------------------------------------------------- */
@@ -571,11 +588,13 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
   return OK;
 }
 
-static status place_mean(const run *r, const goal_card *g, int peak, weight *w,
-                         goal_form *f) {
+/* l: through the peak, of plane contacts. */
+static status place_mean(const run *r, const goal_card *g, int peak,
+                         const line *l, weight *w, goal_form *f) {
   *w = weight_at(r, g, peak);
-  return w->dim == 2 ? place_on_line(r, g, peak, w, f)
-                     : place_on_disc(r, g, peak, w, f);
+  if (w->dim == 3) return place_on_disc(r, g, peak, w, f);
+  place_on_line(r, g, l, w, f);
+  return OK;
 }
 
 /* -, of the mean; half the radius changes that of Hertz by 0.002. */
@@ -583,14 +602,14 @@ static const double NARROW = 0.01;
 
 /* A radius over which the pressure goes like a parabola, while its half has two
  * elements; what the mean may be off. */
-static status narrow(const run *r, const goal_card *g, int peak, weight *w,
-                     goal_form *f) {
+static status narrow(const run *r, const goal_card *g, int peak, const line *l,
+                     weight *w, goal_form *f) {
   for (double mean = add_nodes(r, g, w, NULL);;) {
     weight half;
     goal_card closer = *g;
     goal_form of_half = {.why = GOAL_RELIABLE};
     closer.radius = 0.5 * w->radius;
-    PASS(place_mean(r, &closer, peak, &half, &of_half));
+    PASS(place_mean(r, &closer, peak, l, &half, &of_half));
     if (of_half.why != GOAL_RELIABLE || of_half.is_coarse) {
       f->is_coarse |= f->rough > 0.0;
       if (!(f->rough > 0.0) && g->n_point == 0)
@@ -625,9 +644,10 @@ status goal_set_pressure(const run *r, const goal_card *g, goal_form *f) {
   if (!goal_has_one_thickness(r, g->contact_id)) f->why = GOAL_NOT_COVERED;
   if (f->why != GOAL_RELIABLE) return OK;
   weight w;
-  PASS(place_mean(r, g, peak, &w, f));
+  OWNED_PARTS(line, l, line_new(r, g, peak, &l));
+  PASS(place_mean(r, g, peak, &l, &w, f));
   if (f->why != GOAL_RELIABLE) return OK;
-  if (!(g->radius > 0.0)) PASS(narrow(r, g, peak, &w, f));
+  if (!(g->radius > 0.0)) PASS(narrow(r, g, peak, &l, &w, f));
   f->value = add_nodes(r, g, &w, f->psi);
   PASS(sharpen(r, &w, f, g->contact_id));
   return add_faces(r, g, &w, &f->curved);
@@ -766,7 +786,8 @@ status goal_set_width(const run *r, const goal_card *g, goal_form *f) {
     f->why = GOAL_NOT_COVERED;
   if (peak < 0) f->why = GOAL_NO_ZONE;
   if (f->why != GOAL_RELIABLE) return OK;
-  const weight w = weight_at(r, g, peak);
-  OWNED_PARTS(line, l, line_new(r, g, &w, peak, &l));
+  weight w = weight_at(r, g, peak);
+  OWNED_PARTS(line, l, line_new(r, g, peak, &l));
+  w.s = l.at;
   return set_ends(r, g, &l, &w, f);
 }

@@ -9,7 +9,8 @@
  * The same where two materials, or zones of temperature, meet at the border
  * (Bogy 1971, J Appl Mech 38, 377-386), unless it is a plane of symmetry that
  * their interface is normal to, and where their interface turns within; where
- * loads end (jumps.c), and under the force on a node.
+ * loads end (jumps.c), under the force on a node, and on the axis of bodies of
+ * revolution whose material is not the same round it.
  */
 #include "base/base.h"
 #include "effects/goal/parts.h"
@@ -497,6 +498,32 @@ static void mark_forces(const run *r, unsigned char *ends) {
   }
 }
 
+/* All of an element on the axis: what is infinite there reaches beyond it. */
+static void mark_on_axis(const mesh *m, int elem_id, unsigned char *ends) {
+  const int *v = m->elem + 3 * elem_id;
+  const double away =
+      fmin(m->x[2 * v[0]], fmin(m->x[2 * v[1]], m->x[2 * v[2]]));
+  for (int a = 0; a < 3 && away <= 1e-9 * m->size; ++a)
+    ends[v[a]] |= GOAL_END_OF_SUPPORT;
+}
+
+/* Stresses are infinite on the axis where the hoop is softer than the radius
+ * (Lekhnitskii 1968), or the two expand by heat as they would not alone. */
+static void mark_axis(const run *r, unsigned char *ends) {
+  static const double SAME = 1e-9;
+  const domain *d = &r->body.d;
+  if (d->kin[0] != AXISYMMETRIC) return;
+  for (int e = 0; e < r->msh->n_elem; ++e) {
+    const double *E = d->E + 16 * d->section_id[e];
+    if (E[10] < (1.0 - SAME) * E[0]) mark_on_axis(r->msh, e, ends);
+  }
+  for (int k = 0; k < r->strains.eigen.n && r->now.thermal != NULL; ++k) {
+    const double *e0 = r->now.thermal + 4 * (size_t)k;
+    if (fabs(e0[0] - e0[2]) > SAME * fabs(e0[0] + e0[2]))
+      mark_on_axis(r->msh, r->strains.elem[k], ends);
+  }
+}
+
 /* What is infinite at a node is so steep beyond its elements that recovered
  * gradients lack it there too, and at the front of a crack. */
 static void mark_near(const mesh *m, const unsigned char *front,
@@ -522,6 +549,7 @@ status goal_mark_supports(const run *r, const goal_border *border,
                m->dim == 2 ? angle_at(m, m->elem + k - k % n, k % n) : 0.0,
                &at[m->elem[k]]);
   mark_forces(r, s->ends);
+  mark_axis(r, s->ends);
   PASS(m->dim == 2 ? mark_plane(r, border, at, s)
                    : mark_space(r, border, of, at, s));
   mark_near(m, s->front, s->ends);
