@@ -15,6 +15,8 @@
 /* Motions that move the contact unknowns less than this part of what they
  * share with the motions before them are free. */
 static const double least_part = 1e-10;
+/* Leverages that count as equal: the first unknown is taken. */
+static const double tie = 1e-6;
 
 component node_component(const domain *d, int i, int q, int c) {
   const int dim = d->mesh->dim;
@@ -255,7 +257,8 @@ status rigid_pin(const rigid_motions *r, const rigid_set *s,
   OWNED double *T = NULL, *tau = NULL, *work = NULL;
   OWNED_NEW(lapack_int, row, m);
   PASS_NEW_ALL(OF(T, (size_t)k * m), OF(tau, k), OF(work, n_work));
-  for (int j = 0; j < k; ++j) cblas_dcopy(m, Q + (size_t)m * j, 1, T + j, k);
+  for (int i = 0; i < m; ++i)
+    cblas_daxpy(k, 1 - tie * i / m, Q + i, m, T + (size_t)k * i, 1);
   if (LAPACKE_dgeqp3_work(LAPACK_COL_MAJOR, k, m, T, k, row, tau, work,
                           n_work) != 0)
     RAISE(ERR_INTERNAL, "unknowns that hold the motions not found");
