@@ -17,8 +17,6 @@
  * of unknowns. Beyond this multiple, digits are lost by contrast, slivers or
  * weak supports, and iterative refinement recovers them. */
 static const double refine_excess = 1e4;
-/* Lever arms below this part of the size of the body are negligible. */
-static const double weak_arm = 1e-8;
 
 struct condensed {
   const stiffness *k; /* borrowed */
@@ -185,7 +183,10 @@ static void fill_held(condensed *c) {
 
 static status estimate_condition(condensed *c) {
   double condition = 0;
-  c->condition = c->just_held ? 1 : 1 / (weak_arm * weak_arm);
+  c->condition = 1;
+  for (EACH(const rigid_set, s, c->rigid.set, c->rigid.n_set))
+    if (s->k < s->n_motion)
+      c->condition = fmax(c->condition, 1 / (s->weakest * s->weakest));
   for (int q = 0; q < n_factor(c); ++q) {
     PASS(body_factor_condition(c->k, factor_at(c, q), c->cm, &condition));
     c->condition = fmax(c->condition, condition);

@@ -10,6 +10,7 @@
 #include "fem/factor.h"
 
 #include <cblas.h>
+#include <lapacke.h>
 
 /* Motions that move the contact unknowns less than this part of what they
  * share with the motions before them are free. */
@@ -248,48 +249,20 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
   return OK;
 }
 
-/* The unknown with the largest displacement, from the squares left[m]. */
-static int most_moved(int m, const double *left) {
-  double most = 0;
-  int at = 0;
-  for (int i = 0; i < m; ++i) {
-    const double moved = sqrt(fmax(left[i], 0));
-    if (moved <= most * (1 + tie)) continue;
-    most = moved;
-    at = i;
-  }
-  return at;
-}
-
-/* Gram-Schmidt of the rows of Q with pivots: a pinned motion leaves the others.
- * What these move the next pivot by is not less than 1 / sqrt(m), so that its
- * square may be found by subtraction. */
+/* The rows of Q that a QR decomposition of Q' with column pivoting takes. */
 status rigid_pin(const rigid_motions *r, const rigid_set *s,
                  unsigned char *pinned) {
-  enum { PASSES = 2 };
-  const int m = r->m, k = s->k;
+  const int m = r->m, k = s->k, n_work = (m + 1) * (PANEL + 2);
   const double *Q = r->Q + (size_t)m * s->first;
-  OWNED double *axes = NULL, *left = NULL, *moved = NULL, *part = NULL;
-  PASS_NEW_ALL(OF(axes, (size_t)k * k), OF(left, m), OF(moved, m), OF(part, k));
-  for (int j = 0; j < k; ++j)
-    for (int i = 0; i < m; ++i)
-      left[i] += Q[(size_t)m * j + i] * Q[(size_t)m * j + i];
-  for (int j = 0; j < k; ++j) {
-    const int at = most_moved(m, left);
-    double *axis = axes + (size_t)k * j;
-    cblas_dcopy(k, Q + at, m, axis, 1);
-    for (int pass = 0; pass < PASSES; ++pass) {
-      cblas_dgemv(CblasColMajor, CblasTrans, k, j, 1, axes, k, axis, 1, 0, part,
-                  1);
-      cblas_dgemv(CblasColMajor, CblasNoTrans, k, j, -1, axes, k, part, 1, 1,
-                  axis, 1);
-    }
-    cblas_dscal(k, 1 / cblas_dnrm2(k, axis, 1), axis, 1);
-    cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1, Q, m, axis, 1, 0, moved,
-                1);
-    for (int i = 0; i < m; ++i) left[i] -= moved[i] * moved[i];
-    pinned[at] = 1;
-  }
+  OWNED double *T = NULL, *tau = NULL, *work = NULL;
+  OWNED_NEW(lapack_int, row, m);
+  PASS_NEW_ALL(OF(T, (size_t)k * m), OF(tau, k), OF(work, n_work));
+  for (int i = 0; i < m; ++i)
+    cblas_daxpy(k, 1 - tie * i / m, Q + i, m, T + (size_t)k * i, 1);
+  if (LAPACKE_dgeqp3_work(LAPACK_COL_MAJOR, k, m, T, k, row, tau, work,
+                          n_work) != 0)
+    RAISE(ERR_INTERNAL, "unknowns that hold the motions not found");
+  for (int j = 0; j < k; ++j) pinned[row[j] - 1] = 1;
   return OK;
 }
 

@@ -46,6 +46,7 @@ double component_term(const component *x, int t, int *node);
 typedef struct rigid_set {
   int n;           /* coefficients: those of its pieces one after the other */
   int n_motion, k; /* motions left; those left to rounding */
+  double weakest;  /* resistance to one of the others, of the largest */
   double *Y;       /* [n*k] the latter */
   int *owner;      /* [n] body of a coefficient */
   int n_node;      /* nodes with unknowns that move with it: its own, and */

@@ -20,6 +20,9 @@
 static const double rank_limit = 1e-8;
 /* Motions below this part strain nothing: they are free to rounding. */
 static const double exact_limit = 1e-12;
+/* Motions that only gaps of ties resist, by less than this part: the factor
+ * needs springs for them. */
+static const double weak_limit = 1e-3;
 
 /* ---- pieces -------------------------------------------------------------- */
 
@@ -324,10 +327,11 @@ typedef struct triangle {
   double most; /* the largest term of an entry of it */
 } triangle;
 
-/* Orthonormal motions Z[n*rank] up to rank_limit; the last "exact" ones up to
+/* Orthonormal motions Z[n*rank] up to a limit; the last "exact" ones up to
  * exact_limit. */
 typedef struct null_basis {
   int rank, exact;
+  double weakest; /* singular value above exact_limit, of the largest; 1 */
   double *Z;
 } null_basis;
 
@@ -466,11 +470,11 @@ static void add_contact(triangle *t, motion_hold by) {
   }
 }
 
-/* 1: surely no singular value below rank_limit of the largest. The square of
+/* 1: surely no singular value below the limit, of the largest. The square of
  * their least ratio is not below the product of the reciprocal condition
  * numbers in the 1-norm and the infinity norm, whose estimates may miss by a
  * factor. */
-static status is_regular(const triangle *t, int *regular) {
+static status is_regular(const triangle *t, double limit, int *regular) {
   enum { MISSED = 10 };
   const int n = t->n;
   double one, infinity;
@@ -481,13 +485,14 @@ static status is_regular(const triangle *t, int *regular) {
       LAPACKE_dtrcon_work(LAPACK_COL_MAJOR, 'I', 'L', 'N', n, t->r, n,
                           &infinity, work, number) != 0)
     RAISE(ERR_INTERNAL, "condition of the supports not found");
-  *regular = sqrt(one * infinity) > MISSED * rank_limit;
+  *regular = sqrt(one * infinity) > MISSED * limit;
   return OK;
 }
 
 /* Null space of the triangle: the left singular vectors of its transpose, in
  * column major order. Z stays NULL if there is none. */
-static status find_null_space(const triangle *t, double *u, null_basis *z) {
+static status find_null_space(const triangle *t, double limit, double *u,
+                              null_basis *z) {
   const int n = t->n;
   OWNED double *a = NULL, *s = NULL, *work = NULL;
   double none;
@@ -497,21 +502,22 @@ static status find_null_space(const triangle *t, double *u, null_basis *z) {
                           &none, 1, work, 16 * n) != 0)
     RAISE(ERR_INTERNAL, "singular values of the supports not found");
   for (int k = 0; k < n; ++k) {
-    z->rank += !(s[k] > rank_limit * s[0]);
+    z->rank += !(s[k] > limit * s[0]);
     z->exact += !(s[k] > exact_limit * s[0]);
+    if (s[k] > exact_limit * s[0]) z->weakest = s[k] / s[0];
   }
   memmove(u, u + (size_t)(n - z->rank) * n, (size_t)z->rank * n * sizeof *u);
   return OK;
 }
 
-static status null_space(const triangle *t, null_basis *z) {
+static status null_space(const triangle *t, double limit, null_basis *z) {
   const int n = t->n;
   int regular = 0;
-  *z = (null_basis){0};
-  if (t->n_row >= n) PASS(is_regular(t, &regular));
+  *z = (null_basis){.weakest = 1};
+  if (t->n_row >= n) PASS(is_regular(t, limit, &regular));
   if (regular) return OK;
   PASS_NEW(z->Z, (size_t)n * n);
-  if (t->n_row > 0) return find_null_space(t, z->Z, z);
+  if (t->n_row > 0) return find_null_space(t, limit, z->Z, z);
   z->rank = z->exact = n;
   for (int k = 0; k < n; ++k) z->Z[(size_t)k * (n + 1)] = 1;
   return OK;
@@ -627,7 +633,7 @@ static status supported_space(const body_sets *s, int id, int closed,
                               triangle *t, null_basis *z) {
   PASS(triangle_new(s, id, closed, t));
   add_supports(t);
-  return null_space(t, z);
+  return null_space(t, closed ? rank_limit : weak_limit, z);
 }
 
 static status find_spaces(const body_sets *s, int id, motion_hold most,
@@ -637,7 +643,8 @@ static status find_spaces(const body_sets *s, int id, motion_hold most,
   if (f->of[HELD_BY_CONTACT].rank == 0) return OK;
   for (int by = HELD_BY_CONTACT; by > HELD_BY_NOTHING; --by) {
     add_contact(&f->t, (motion_hold)by);
-    if (by - 1 <= (int)most) PASS(null_space(&f->t, &f->of[by - 1]));
+    if (by - 1 <= (int)most)
+      PASS(null_space(&f->t, rank_limit, &f->of[by - 1]));
   }
   PASS_NEW_ALL(OF(f->known, (size_t)n * n), OF(f->rest, n), OF(f->part, n));
   return OK;
@@ -719,6 +726,7 @@ static status add_set(const triangle *t, const null_basis *z,
   *to = (rigid_set){.n = t->n,
                     .n_motion = z->rank,
                     .k = z->exact,
+                    .weakest = z->weakest,
                     .n_node = s->start[t->id + 1] - s->start[t->id]};
   PASS_NEW_ALL(OF(to->Y, n * to->k), OF(to->owner, n),
                OF(to->node, to->n_node));

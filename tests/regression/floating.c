@@ -648,4 +648,32 @@ TEST(many_free_bodies_are_solved_as_one_is) {
                           1e-9);
 }
 
+/* The gap of a tie that varies resists a turn of the bodies by its square. */
+TEST(blocks_tied_across_a_thin_wedge_stand_on_the_floor) {
+  static const double gaps[] = {1e-3, 1e-5, 1e-7, 1e-9};
+  for (int k = 0; k < 12; ++k) {
+    JOB j = job_with("wedge", "tests/regression/mesh/pair.geo",
+                     "*PARAMETER\nL = %g\n*MESH, FILE=pair.geo\n"
+                     "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+                     "*MATERIAL, NAME=H\n*ELASTIC\n%g, 0.3\n"
+                     "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+                     "*SOLID SECTION, ELSET=UPPER, MATERIAL=H\n"
+                     "*TIE, NAME=T\nUNDER, OVER\n"
+                     "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+                     "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+                     "*FRICTION, CONTACT=C, LAW=COULOMB\n0.5\n"
+                     "*STEP\n*STATIC\n*SOLVER, STIFFNESS=%s\n"
+                     "*DSLOAD\nTOP, P, 10.\nTOP, TX, 1.\n"
+                     "*PRINT, TOTALS\n*END STEP\n",
+                     gaps[k / 3], k % 3 == 0 ? 1e3 : 1e9,
+                     k % 3 == 2 ? "FACTOR" : "DENSE");
+    CK_EXIT(job_run(&j, ""), 0, j);
+    ck_assert(job_told(&j, "condition") > 1 / (gaps[k / 3] * gaps[k / 3]));
+    ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "force_x"), -1, 1e-8);
+    ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "force_y"), 10, 1e-12);
+    ck_assert_double_eq_tol(job_value(&j, "TOTALS", -1, "moment_z"), 7,
+                            3 * gaps[k / 3] + 1e-8);
+  }
+}
+
 UNIT_MAIN("floating")
