@@ -145,8 +145,9 @@ static void print_saved(const job *j, FILE *f) {
   if (!sum.asked) return;
   fprintf(f,
           "  stopping balanced with the other errors saved about %.0f of "
-          "%.0f iterations",
-          sum.saved_iterations, sum.iterations + sum.saved_iterations);
+          "%.0f iteration%s",
+          sum.saved_iterations, sum.iterations + sum.saved_iterations,
+          sum.iterations + sum.saved_iterations == 1 ? "" : "s");
   if (!j->o->no_timing) fprintf(f, ", %.3f s of CPU", sum.saved_cpu);
   fputs(" (to residual 1E-10)\n", f);
 }
@@ -400,7 +401,7 @@ static void print_passes(const job *j, FILE *f) {
             "total[%]");
   if (t->goals != NULL) passes_goal_heads(j->m, f);
   if (!j->o->no_timing) fprintf(f, " %9s", "cpu[s]");
-  fprintf(f, "  changed next\n");
+  fprintf(f, "  next pass\n");
   for (int i = 0; i < t->n; ++i) print_pass(j, &t->rows[i], i + 1, f);
   if (t->forecast != NULL) print_pass(j, t->forecast, 0, f);
   if (t->goals != NULL)
