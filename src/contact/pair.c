@@ -248,10 +248,9 @@ status pairs_couple(const surface_input *in, message_log *log) {
       message_add(
           log, P4034, &in->pairs[p].at,
           "%s %s: the master %s and that of an earlier pair meet within "
-          "faces of the slave %s: %d nodes have contact with the mean "
-          "of both",
+          "faces of the slave %s: contact with the mean of both at %d node%s",
           in->pairs[p].card, in->pairs[p].name, in->pairs[p].master->name,
-          in->pairs[p].group->name, n_shared);
+          in->pairs[p].group->name, n_shared, n_shared == 1 ? "" : "s");
     tell(in, &in->pairs[p], n_held, log);
   }
   return message_status(log, ERR_DECK);

@@ -674,9 +674,9 @@ static void say(const builder *b, int pair_id) {
                 p->card, p->name, p->group->name);
   if (t->n_unreached > 0 && t->n_kept > 0)
     message_add(b->log, P4003, &p->at,
-                "*CONTACT %s: %d nodes cannot reach obstacle %s along their "
-                "normal and are left out",
-                p->name, t->n_unreached, p->support->name);
+                "*CONTACT %s: left out, as the normal there does not meet "
+                "obstacle %s: %d of its nodes",
+                p->name, p->support->name, t->n_unreached);
   say_distance(b, p, t);
   if (t->sine > told_sine)
     message_add(b->log, P4018, &p->at,

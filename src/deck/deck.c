@@ -128,6 +128,7 @@ static int check_names(reader *r, const card *c, const char *const *names) {
     const char *near =
         nearest_word(p->name, candidate_name,
                      &(name_list){names, INT_MAX, sizeof *names, 0, 0});
+    if (near == NULL) near = names[0]; /* the only one */
     message_add(r->log, P2003, &p->at,
                 near != NULL ? "unknown parameter %s of *%s; did you mean %s?"
                              : "unknown parameter %s of *%s",

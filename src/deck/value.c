@@ -49,8 +49,10 @@ static void report_expression(const deck *d, message_log *log, const place *at,
     there.column_no = start + column + 1;
   if (strncmp(why, unknown, sizeof unknown - 1) == 0)
     advise(d, log, why + sizeof unknown - 1, "", advice);
-  message_add(log, P1022, &there, "%.300s in expression '%.200s'%s", why, text,
-              advice);
+  const char *near = strstr(why, "; did you mean ");
+  const int n = near != NULL ? (int)(near - why) : 300;
+  message_add(log, P1022, &there, "%.*s in expression '%.200s'%s%s", n, why,
+              text, near != NULL ? near : "", advice);
 }
 
 /* Length of a name between < and >, or 0. */

@@ -115,7 +115,7 @@ static status read_numbers(words *w, exchange_problem *p) {
   PASS(next_word(w, word));
   if (word[0] != '\0')
     RAISE(ERR_DECK,
-          "%s:%d: more follows the last item of q; expected %d numbers",
+          "%s:%d: more follows the last item of q; numbers expected: %d",
           w->path, w->word_line_no, p->n * (p->n + 1) + 1);
   return OK;
 }

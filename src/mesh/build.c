@@ -333,10 +333,11 @@ static status read_geo(const mesh_source *source, const char *head,
   int is_solid = strstr(head, "OpenCASCADE") != NULL;
   PASS(check_geo_tail(source->file, at, log));
   const status st = raw_read(&(raw_request){source, is_solid}, raw);
-  if (st == ERR_MESH)
+  if (st == OK) return st;
+  if (st == ERR_MESH || st == ERR_FILE)
     message_add(log, number_of(status_message()), at, "mesh file \"%s\": %s",
                 source->file, status_message());
-  return st;
+  RAISE(st, "mesh file \"%s\": %s", source->file, status_message());
 }
 
 /* A .msh is data only. */

@@ -233,14 +233,26 @@ int child_tells_of_memory(const char *text) {
          strstr(text, "annot allocate memory") != NULL;
 }
 
+/* 1: it tells of a file '...' that cannot be read. */
+static int names_no_file(const char *text) {
+  static const char word[] = " file '";
+  char path[PATH_MAX];
+  const char *from = strstr(text, word), *end = strrchr(text, '\'');
+  if (from == NULL || end < (from += sizeof word - 1)) return 0;
+  snprintf(path, sizeof path, "%.*s", (int)(end - from), from);
+  return access(path, R_OK) != 0;
+}
+
 /* A step of gmsh failed: its last error gives the reason. */
 static void check(const child *c, int error, const char *doing) {
   if (!error) return;
   char *last = NULL;
   int ignored;
   c->gmsh.LoggerGetLastError(&last, &ignored);
-  int memory = last != NULL && child_tells_of_memory(last);
-  give_up(c, memory ? ERR_MEMORY : ERR_MESH, "gmsh fails to %s: %s", doing,
+  status code = ERR_MESH;
+  if (last != NULL && child_tells_of_memory(last)) code = ERR_MEMORY;
+  if (last != NULL && names_no_file(last)) code = ERR_FILE;
+  give_up(c, code, "gmsh fails to %s: %s", doing,
           last != NULL && last[0] != '\0' ? last : "no reason given");
 }
 

@@ -185,15 +185,15 @@ static status child_failure(int ended, int code, int error_fd) {
   int killed = ended && WIFSIGNALED(code);
   if (child_tells_of_memory(text))
     RAISE(ERR_MEMORY,
-          "gmsh ran out of memory while reading the mesh; a damaged file may "
-          "require too much");
+          "gmsh ran out of memory; give it more (--max-memory, ulimit -v) or "
+          "make the mesh coarser; a damaged file may require too much");
   if (killed && had_all_time())
     RAISE(ERR_CPU_LIMIT,
           "gmsh reached the limit of CPU time while reading the mesh");
   if (killed && WTERMSIG(code) == SIGKILL)
     RAISE(ERR_MEMORY,
-          "gmsh was killed while reading the mesh: the system is out of "
-          "memory, or the process was killed%s%s",
+          "gmsh was killed: the system is out of memory, or the process was "
+          "killed; free memory or make the mesh coarser%s%s",
           said, last);
   if (killed)
     RAISE(ERR_MESH, "gmsh was ended by signal %d (%s)%s%s", WTERMSIG(code),

@@ -177,8 +177,7 @@ static void close_contacts(const job *j, FILE *f) {
       run->ends + (last->step_no - 1) * job_end_size(j->m) + 2;
   for (int i = 0; i < shown; ++i) value = close_contact(j, i, value, f);
   if (shown < j->m->n.contact)
-    fprintf(f, "%-9s %d contacts more: JOB.json\n", "",
-            j->m->n.contact - shown);
+    fprintf(f, "%-9s and %d more in JOB.json\n", "", j->m->n.contact - shown);
   if (shown == 0)
     fprintf(f, "%-9s open %d, slip %d, stick %d\n", "contact", last->count.open,
             last->count.slip, last->count.stick);

@@ -41,16 +41,18 @@ int inform_keywords(const char *name, const char **near) {
 
 static void print_sizes(const model *m, const mesh *msh) {
   static const char *const kinds[] = {"none", "static", "quasistatic", "visco"};
-  printf("mesh      %d nodes, %d elements, %d-D\n", msh->n_node, msh->n_elem,
-         msh->dim);
+  printf("mesh      %d nodes, %d element%s, %d-D\n", msh->n_node, msh->n_elem,
+         msh->n_elem == 1 ? "" : "s", msh->dim);
   for (int i = 0; i < msh->n_group; ++i)
-    printf("group     %-20s dimension %d, %d nodes\n", msh->group[i].name,
-           msh->group[i].dim, msh->group[i].n_node);
+    printf("group     %-20s dimension %d, %d node%s\n", msh->group[i].name,
+           msh->group[i].dim, msh->group[i].n_node,
+           msh->group[i].n_node == 1 ? "" : "s");
   for (int i = 0; i < m->n.step; ++i)
-    printf("step      %d %s: %s, time %g to %g, %.0f increments\n", i + 1,
+    printf("step      %d %s: %s, time %g to %g, %.0f increment%s\n", i + 1,
            m->steps[i].name, kinds[m->steps[i].kind], m->steps[i].start,
            m->steps[i].start + m->steps[i].total,
-           m->steps[i].total / m->steps[i].dt);
+           m->steps[i].total / m->steps[i].dt,
+           m->steps[i].total / m->steps[i].dt < 1.5 ? "" : "s");
 }
 
 static status print_plan(const model *m, const mesh *msh, int n) {
@@ -110,8 +112,9 @@ static status print_motions(const model *m, const mesh *msh, int step_id) {
 }
 
 status inform_check_problem(const model *m, const exchange_problem *p) {
-  printf("problem   %s: %d %s, %d unknowns, condensed to %d\n", p->form, p->n,
-         p->dim == 1 ? "rows" : "contacts", p->unknowns, p->m);
+  printf("problem   %s: %d %s%s, %d unknown%s, condensed to %d\n", p->form,
+         p->n, p->dim == 1 ? "row" : "contact", p->n == 1 ? "" : "s",
+         p->unknowns, p->unknowns == 1 ? "" : "s", p->m);
   return print_plan(m, NULL, p->n);
 }
 

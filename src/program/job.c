@@ -72,10 +72,14 @@ static status read_problem(model *m, exchange_problem **problem) {
 
 static status read_deck(const command *c, message_log *log, job_input *in) {
   TIMED(STAGE_DECK);
+  status code = ERR_DECK;
+  message_view w;
   status st = deck_read(c->deck_file, c->n_define, c->defines, log, &in->d);
   if (st == OK || st == ERR_DECK) st = model_from_deck(in->d, log, &in->m);
-  PASS(st);
-  return message_status(log, ERR_DECK);
+  if (st != ERR_DECK) PASS(st);
+  for (int k = 0; message_get(log, k, &w); ++k)
+    if (w.id == P1001) code = ERR_FILE; /* that of an *INCLUDE */
+  return message_status(log, code);
 }
 
 status job_read(const command *c, const job_mesh *other, message_log *log,

@@ -1,6 +1,7 @@
 /* The restart file: its origin, and whether a deck may continue from it. */
 #include "base/base.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "base/system/blas.h"
 #include "base/system/input.h"
 #include "mesh/msh/geo.h"
@@ -9,6 +10,7 @@
 #include "program/job.h"
 #include "run/setup/setup.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <unistd.h>
@@ -260,13 +262,55 @@ static void first_line(const echo_card *c, char text[100]) {
   snprintf(text, 100, "%.*s", n < 90 ? (int)n : 90, from);
 }
 
+/* Length of the number without sign at the start of a text, or 0. */
+static size_t number_length(const char *text) {
+  size_t n = strspn(text, "0123456789.");
+  if (n == 0 || text[n] == '\0' || strchr("eEdD", text[n]) == NULL) return n;
+  const size_t sign = text[n + 1] == '+' || text[n + 1] == '-';
+  const size_t digits = strspn(text + n + 1 + sign, "0123456789");
+  return digits > 0 ? n + 1 + sign + digits : n;
+}
+
+/* Two numbers of one value. Digits alone may be part of a name: as text. */
+static int is_same_number(const char *a, size_t n, const char *b, size_t m) {
+  double x, y;
+  char one[64], other[64];
+  if (n == 0 || m == 0 || n >= sizeof one || m >= sizeof other) return 0;
+  snprintf(one, sizeof one, "%.*s", (int)n, a);
+  snprintf(other, sizeof other, "%.*s", (int)m, b);
+  if (strpbrk(one, ".eEdD") == NULL && strpbrk(other, ".eEdD") == NULL)
+    return 0;
+  return number_real(one, &x) == NULL && number_real(other, &y) == NULL &&
+         x == y;
+}
+
+/* The same but for how numbers are spelled, and where a line goes on. */
+static int is_same_card(const echo_card *one, const echo_card *other) {
+  const char *a = one->text, *b = other->text;
+  for (int in_name = 0; a < one->text + one->length;) {
+    const size_t n = in_name ? 0 : number_length(a);
+    const size_t m = in_name ? 0 : number_length(b);
+    if (is_same_number(a, n, b, m)) {
+      a += n;
+      b += m;
+      continue;
+    }
+    if (*a != *b) return 0;
+    const int goes_on = *a == ',';
+    in_name = isalnum((unsigned char)*a) || *a == '_' || *a == '.';
+    a += 1 + (goes_on ? strspn(a + 1, " \n") : 0);
+    b += 1 + (goes_on ? strspn(b + 1, " \n") : 0);
+  }
+  return b == other->text + other->length;
+}
+
 static status compare_decks(const char *was, const char *is, int step_no) {
   echo_card a = {was, 0, 0}, b = {is, 0, 0};
   char before[100], now[100], where[40] = "";
   do {
     next_bound(&a, step_no);
     next_bound(&b, step_no);
-    if (a.length == b.length && memcmp(a.text, b.text, a.length) == 0) continue;
+    if (is_same_card(&a, &b)) continue;
     first_line(&a, before);
     first_line(&b, now);
     if (a.step_no > 0) snprintf(where, sizeof where, "step %d, ", a.step_no);

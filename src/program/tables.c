@@ -148,8 +148,8 @@ static status copy_row(extract *e) {
     return OK;
   }
   if (n != e->n_place)
-    RAISE(ERR_FILE, "%s:%ld: %d values in a row of %d columns", e->path,
-          e->line_no, n, e->n_place);
+    RAISE(ERR_FILE, "%s:%ld: %d value%s in a row of %d columns", e->path,
+          e->line_no, n, n == 1 ? "" : "s", e->n_place);
   for (int k = 0; k < e->n_column; ++k) value[k] = "";
   for (int i = 0; i < e->n_place; ++i)
     if (e->place[i] >= 0) value[e->place[i]] = e->word[i];

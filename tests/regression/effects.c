@@ -60,7 +60,7 @@ TEST(check_prints_the_plan_of_the_listing) {
   ck_assert_msg(strstr(listing, from) != NULL, "%s", from);
 }
 
-/* An effect is named with the card that called for it, file and line. */
+/* An effect is named with the card that requires it, file and line. */
 TEST(plan_names_file_and_line) {
   JOB j = block("", bare, "--check");
   ck_assert_ptr_nonnull(

@@ -129,6 +129,30 @@ TEST(changed_decks_are_refused_by_card) {
   goes_on(&j, 0, "later load");
 }
 
+/* But a change of a value, of a name or of what is an expression is one. */
+TEST(numbers_may_be_spelled_otherwise) {
+  static const struct {
+    const char *from, *to;
+    int same;
+  } edits[] = {{"130.D3, 0.2\n", "1.3E+05, .20\n", 1},
+               {"0.4\n*STEP", "\"0.4 + 0.*x\"\n*STEP", 0},
+               {"CONFORMING", "CONFORMING, SIDE=OUTSIDE", 1},
+               {"GROUP=CONTACT, OBSTACLE=O", "OBSTACLE=O,group = CONTACT", 1},
+               {"TOP, 1, 1, 0.02", "TOP,1 ,1,2E-2", 1},
+               {"-0.02", "0.02", 0},
+               {"-0.02", "-0.02000000000000001", 0},
+               {"0.25, 1.\n*B", "0.25, 1.0000000000000000000000\n*B", 1},
+               {"2, 2, -0.02", "1, 2, -0.02", 0},
+               {"1.3E+05, .20", "1.3E+02, .20", 0}};
+  JOB j = stopped_at(2);
+  for (size_t k = 0; k < sizeof edits / sizeof *edits; ++k) {
+    edit(&j, edits[k].from, edits[k].to);
+    if (!edits[k].same) refused(&j, 2, "the deck has changed");
+    if (!edits[k].same) edit(&j, edits[k].to, edits[k].from);
+  }
+  goes_on(&j, 0, "numbers spelled otherwise");
+}
+
 /* Output and solver of a step to come, requests for restart files anywhere; of
  * the step in progress they may not change, nor may effects come or go. */
 TEST(later_steps_may_change) {

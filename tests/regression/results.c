@@ -265,8 +265,7 @@ TEST(end_shows_twenty_contacts) {
               NULL &&
           strstr(said,
                  "\nC19       force_x 0, force_y 1, open 0, slip 1, "
-                 "stick 0\r\n          1 contacts more: JOB.json\r\n") !=
-              NULL &&
+                 "stick 0\r\n          and 1 more in JOB.json\r\n") != NULL &&
           strstr(said, "\nW         none: ") != NULL &&
           strstr(said, "\nG         1.5 force, no estimate: ") != NULL,
       "%s", said);

@@ -60,6 +60,8 @@ TESTS(depth_under_a_belt, 2) {
                        WORN, "--no-timing");
   ck_assert_msg(code == 0, "%s", j.errors);
   check_depth(&j, 1e-4 * 3 * 10);
+  FREED char *lst = job_file(&j, "lst"); /* of the mesh there is no error */
+  ck_assert_ptr_nonnull(strstr(lst, "unknown without *ACCURACY, TIME=YES"));
   /* The obstacle takes the work p depth, less what it put in at first. */
   DAT e = job_table(&j, "ENERGY", -1), first = job_table(&j, "ENERGY", 0);
   ck_assert_double_eq_tol(

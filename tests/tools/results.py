@@ -151,8 +151,11 @@ class Results(unittest.TestCase):
                               self.dir / "short.dat")[0], 0)
         for words in ((self.dir / "none.dat", a.file("dat")), (
                 a.file("lst"), a.file("lst")), (a.file("dat"),), (
-                    a.file("dat"), a.file("dat"), "--atol-of", "f_q")):
-            self.assertEqual(tool("compare", *words)[0], 2)
+                    a.file("dat"), a.file("dat"), "--atol-of", "f_q"), (
+                        a.file("dat"), a.file("dat"), "--ignore", "f_q")):
+            code, said = tool("compare", *words)
+            self.assertEqual(code, 2)
+            self.assertIn("f_q" if "f_q" in words else "", said)
 
     def test_scale_of_a_column_for_all_of_its_kind(self):
         for name, other in (("new", 1.001), ("old", 1.0)):

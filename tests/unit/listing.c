@@ -515,7 +515,7 @@ TEST(budget_goals_and_passes) {
       "\n  target 10 % of the energy norm, 0.125 length SINK, 3 % of PULL: "
       "reached\n"
       "  pass         unknowns    mesh[%]   steps[%]  solver[%]   total[%] "
-      "SINK[length]    PULL[%]  changed next\n"
+      "SINK[length]    PULL[%]  next pass\n"
       "  1                 100  1.00E+000          -  3.00E+000  4.00E+000    "
       "        -  4.00E+000  finer\n"
       "  2                 200  5.00E+000  6.00E+000  7.00E+000  8.00E+000    "

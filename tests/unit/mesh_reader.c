@@ -42,6 +42,11 @@ TEST(reader_that_dies_is_told) {
       {"Exit;\n", "gmsh ended by itself", ERR_MESH},
       {"Error(\"no h given\");\n", "gmsh fails to read the file: no h given",
        ERR_MESH},
+      {"Merge \"none.stl\";\n", "Unable to open file", ERR_FILE},
+      {"SetFactory(\"OpenCASCADE\");\na() = ShapeFromFile(\"none.step\");\n",
+       "Could not read file", ERR_FILE},
+      {"SetFactory(\"OpenCASCADE\");\na() = ShapeFromFile(\"x.step\");\n",
+       "Could not read file", ERR_MESH},
       /* the surface is not closed: gmsh throws what nobody catches */
       {"Point(1)={0,0,0}; Point(2)={1,0,0}; Point(3)={1,1,0}; Line(1)={1,2};"
        "Line(2)={2,3}; Curve Loop(1)={1,2}; Plane Surface(1)={1};"
@@ -49,6 +54,7 @@ TEST(reader_that_dies_is_told) {
        "gmsh", ERR_MESH},
   };
   MESH_FILE f = mesh_file_open();
+  mesh_file_write(&f, "x.step", "no shape", 8);
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     ck_assert_ptr_null(mesh_file_text(&f, "dies.geo", cases[i].geo));
     ck_assert_int_eq(f.answer, cases[i].answer);
@@ -66,6 +72,8 @@ TEST(reader_that_dies_is_told) {
       "SystemCall \"echo out of dynamic memory in a buffer >&2\"; Exit;\n"));
   ck_assert_int_eq(f.answer, ERR_MEMORY);
   ck_assert_ptr_nonnull(strstr(status_message(), "gmsh ran out of memory"));
+  ck_assert_ptr_nonnull(strstr(status_message(), "/scanner.geo"));
+  ck_assert_ptr_nonnull(strstr(status_message(), "--max-memory"));
 }
 
 /* The process of a file in the folder that a shell writes; 0: none in time. */

@@ -105,9 +105,9 @@ static status pose(run *r, void *self, double t) {
 
 static void note_start(run *r, const nested *x) {
   RUN_NOTE(r,
-           "  started from the coarser mesh (%d contact nodes): %d of %d "
+           "  started from the coarser mesh (%d contact node%s): %d of %d "
            "contact nodes end in another state\n",
-           coarser_nodes(x->of),
+           coarser_nodes(x->of), coarser_nodes(x->of) == 1 ? "" : "s",
            count_other(r->nodes.n, x->state, r->result.contact), r->nodes.n);
 }
 

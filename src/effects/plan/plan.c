@@ -178,12 +178,14 @@ static void print_name(const plan_row *r, const char *lead, FILE *f) {
 
 void plan_print(const effect_plan *p, const char *lead, FILE *f) {
   fprintf(f, "%s%-26s %-3s %18s %7s  %s\n", lead, "effect", "", "size",
-          "cpu[%]", "called for by");
+          "cpu[%]", "required by");
   for (EACH(const plan_row, r, p->rows, p->n)) {
     print_name(r, lead, f);
     fprintf(f, " %18s %7s  %s\n",
             r->on && r->work.kind != NULL
-                ? text_of("%.0f %s", r->work.items, r->work.kind)
+                ? text_of("%.0f %.*s", r->work.items,
+                          (int)strlen(r->work.kind) - (r->work.items == 1.0),
+                          r->work.kind)
                 : "",
             r->on ? text_of("%.1f", 100 * r->share) : "", r->why);
   }

@@ -146,8 +146,8 @@ void report_idle(const reading *r, const char *name, const char *with);
 int name_taken(const reading *r, const char *name, const char *old);
 /* The same, or that the tables show both as one name. */
 void shown_name_taken(const reading *r, const char *name, const char *old);
-/* Report a word that names nothing, with the nearest of those there are: "text"
- * precedes it, as "there is no *MATERIAL, NAME=". */
+/* Report a word that names nothing, with the nearest of those there are, or
+ * all: "text" precedes it, as "there is no *MATERIAL, NAME=". */
 void unknown_word(message_log *log, message_id id, const place *at,
                   const char *text, const char *word,
                   const char *(*next)(const void *ctx, int i), const void *ctx);

@@ -74,9 +74,9 @@ static int read_rotate(const reading *r, const record *line, obstacle *o) {
   int n = line->n_field, solid = n == 8;
   if (n != 4 && n != 8) {
     message_add(r->m->log, P2009, &line->at,
-                "%d fields on this line of *OBSTACLE; expected: ROTATE, x, y, "
+                "%d field%s on this line of *OBSTACLE; expected: ROTATE, x, y, "
                 "angle or ROTATE, x, y, z, ax, ay, az, angle",
-                n);
+                n, n == 1 ? "" : "s");
     return -1;
   }
   if (read_axis(r, line, solid, o->pivot, o->axis) != 0) return -1;

@@ -75,11 +75,16 @@ void unknown_word(message_log *log, message_id id, const place *at,
                   const char *text, const char *word,
                   const char *(*next)(const void *ctx, int i),
                   const void *ctx) {
-  const char *near =
-      message_wanted(log, ERROR) ? nearest_word(word, next, ctx) : NULL;
-  message_add(log, id, at, "%s%s%s%s%s", text, word,
-              near == NULL ? "" : "; did you mean ", near == NULL ? "" : near,
-              near == NULL ? "" : "?");
+  char all[400] = "";
+  const int wanted = message_wanted(log, ERROR);
+  const char *near = wanted ? nearest_word(word, next, ctx) : NULL, *one;
+  size_t used = 0;
+  for (int i = 0; wanted && near == NULL && (one = next(ctx, i)) != NULL; ++i)
+    if (used < sizeof all - 70)
+      used += (size_t)snprintf(all + used, sizeof all - used, "%s%.60s",
+                               i == 0 ? "; the names are " : ", ", one);
+  if (near != NULL) snprintf(all, sizeof all, "; did you mean %.300s?", near);
+  message_add(log, id, at, "%s%s%s", text, word, all);
 }
 
 const char *const *axisymmetric_names(const deck *d) {

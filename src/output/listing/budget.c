@@ -145,8 +145,9 @@ static void print_saved(const job *j, FILE *f) {
   if (!sum.asked) return;
   fprintf(f,
           "  stopping balanced with the other errors saved about %.0f of "
-          "%.0f iterations",
-          sum.saved_iterations, sum.iterations + sum.saved_iterations);
+          "%.0f iteration%s",
+          sum.saved_iterations, sum.iterations + sum.saved_iterations,
+          sum.iterations + sum.saved_iterations == 1 ? "" : "s");
   if (!j->o->no_timing) fprintf(f, ", %.3f s of CPU", sum.saved_cpu);
   fputs(" (to residual 1E-10)\n", f);
 }
@@ -154,7 +155,9 @@ static void print_saved(const job *j, FILE *f) {
 static void print_budget(const job *j, FILE *f) {
   budget_row rows[BUDGET_ROWS];
   int n = job_budget(j, rows), cost = !j->o->no_timing;
-  if (n == 0) return;
+  const int not_asked = j->run->n_increment > 0 && path_counts(j->m) &&
+                        !(j->m->effects & EFFECT_TIME_ERROR);
+  if (n == 0 && !not_asked) return;
   fprintf(f, "\n  %-26s %12s %12s", "error in the energy norm", "last[%]",
           "largest[%]");
   fprintf(f, cost ? " %13s %15s\n" : "\n", "work cpu[s]", "estimate cpu[s]");
@@ -168,6 +171,8 @@ static void print_budget(const job *j, FILE *f) {
     if (cost) fprintf(f, " %15.3f", rows[i].estimated);
     fputc('\n', f);
   }
+  if (not_asked)
+    fprintf(f, "  %-26s unknown without *ACCURACY, TIME=YES\n", "steps");
   double effectivity = job_effectivity(j);
   if (!isnan(effectivity))
     fprintf(f, "  estimated over true error: %.2f\n", effectivity);
@@ -246,10 +251,7 @@ void job_advice(const job *j, char *text, size_t size) {
   add_solver(j, fmax(in_mesh, in_steps), last_of(rows, n, "solver"), text,
              size);
   if (isnan(in_steps) && path_counts(j->m))
-    text_add(text, size, "; %s",
-             j->m->effects & EFFECT_TIME_ERROR
-                 ? "the error of the steps is unknown"
-                 : "of the steps no error is known without TIME=YES");
+    text_add(text, size, "; the error of the steps is unknown");
 }
 
 static void print_advice(const job *j, FILE *f) {
@@ -399,7 +401,7 @@ static void print_passes(const job *j, FILE *f) {
             "total[%]");
   if (t->goals != NULL) passes_goal_heads(j->m, f);
   if (!j->o->no_timing) fprintf(f, " %9s", "cpu[s]");
-  fprintf(f, "  changed next\n");
+  fprintf(f, "  next pass\n");
   for (int i = 0; i < t->n; ++i) print_pass(j, &t->rows[i], i + 1, f);
   if (t->forecast != NULL) print_pass(j, t->forecast, 0, f);
   if (t->goals != NULL)

@@ -177,9 +177,10 @@ static void print_path(const job *j, const theorems_path *p, FILE *f) {
   if (p->bound > 0.0)
     fprintf(f,
             "  theory: (3.2) constant of the laws %s %s, below 1 for dt < %s "
-            "%s; over the step after %.0f passes\n",
+            "%s; over the step after %.0f pass%s\n",
             text_number(p->speed, 4), model_unit(j->m, "1/time"),
-            text_number(p->longest, 4), model_unit(j->m, "time"), p->passes);
+            text_number(p->longest, 4), model_unit(j->m, "time"), p->passes,
+            p->passes == 1.0 ? "" : "es");
 }
 
 static void print_theory(const job *j, const state *s, FILE *f) {
@@ -293,9 +294,9 @@ static void print_balance(const job *j, const state *s, FILE *f) {
   }
   fprintf(f,
           "  balanced: %s %% is enough, stopped below residual %s; saved "
-          "about %.0f iterations",
+          "about %.0f iteration%s",
           text_number(100 * b->wanted, 1), text_number(b->tol, 1),
-          b->saved_iterations);
+          b->saved_iterations, round(b->saved_iterations) == 1.0 ? "" : "s");
   if (!j->o->no_timing) fprintf(f, ", %.3f s", b->saved_cpu);
   fputc('\n', f);
 }

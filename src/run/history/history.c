@@ -202,9 +202,9 @@ static void note_nodes(run *r) {
   const int now = active_count(&r->nodes.active, r->nodes.n);
   if (r->nodes.n == 0 || now == r->nodes.n_reported) return;
   RUN_NOTE(r,
-           "  inactive contact nodes touch: solved again with %d nodes, not "
-           "%d, of %d\n",
-           now, r->nodes.n_reported, r->nodes.n);
+           "  inactive contact nodes touch: solved again with %d node%s, "
+           "not %d, of %d\n",
+           now, now == 1 ? "" : "s", r->nodes.n_reported, r->nodes.n);
   r->nodes.n_reported = now;
 }
 
