@@ -78,6 +78,27 @@ TEST(ends_of_supports_are_not_reliable) {
   job_end(&j);
 }
 
+/* The same where a clamped part of a straight side ends. */
+TEST(ends_of_supports_within_a_side) {
+  JOB j = job_begin("side");
+  job_write(&j, "side.geo",
+            "h = 0.1;\nPoint(1) = {0, 0, 0, h};\nPoint(2) = {1, 0, 0, h};\n"
+            "Point(3) = {2, 0, 0, h};\nPoint(4) = {2, 2, 0, h};\n"
+            "Point(5) = {0, 2, 0, h};\n"
+            "For k In {1 : 5}\n  Line(k) = {k, k %% 5 + 1};\nEndFor\n"
+            "Curve Loop(1) = {1 ... 5};\nPlane Surface(1) = {1};\n"
+            "Physical Curve(\"FOOT\") = {1};\nPhysical Curve(\"TOP\") = {4};\n"
+            "Physical Surface(\"BODY\") = {1};\n");
+  job_write(&j, "side.inp",
+            "*MESH, FILE=side.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1\n1.1, 0.\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nFOOT, 1, 2\n*DSLOAD\nTOP, P, 1.\n"
+            "*PRINT, GOALS\n*END STEP\n");
+  CK_EXIT(job_run(&j, ""), 0, j);
+  ck_assert(goal_has_verdict(&j, "U", "support_end"));
+}
+
 /* The same along the edges of a cube. */
 TEST(ends_of_supports_in_space) {
   static const char on[] = "PLANE\n0., 0., 0.\n0., 0., 1." CONTACT NORMAL;

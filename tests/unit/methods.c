@@ -92,7 +92,8 @@ TEST(variants_agree_with_a_given_limit) {
   }
 }
 
-/* One tangent prescribed, one node in a corner. */
+/* One tangent prescribed, one node in a corner; by forces, W = inv(A), too,
+ * and one of them alone. */
 TEST(variants_agree_on_held_and_cornered_nodes) {
   for (int k = 0; k < 24; ++k) {
     int dim = 2 + k % 2, n = 4 + k % 5, m = dim * n;
@@ -111,6 +112,21 @@ TEST(variants_agree_on_held_and_cornered_nodes) {
     c.cp.side_gap = side;
     must_agree(&c, k, 0);
     ck_assert_double_eq_tol(c.u[dof], c.f[dof] / c.A[dof + m * dof], 1e-9);
+    static const variant sor = {"sor", NULL, NULL};
+    double W[24 * 24], q[24], exact[24];
+    memcpy(exact, c.u, (size_t)m * sizeof *exact);
+    ck_assert(case_inverse(m, c.A, W));
+    contact_product(m, W, c.f, q);
+    c.cp.W = W;
+    c.cp.A = NULL;
+    c.cp.f = q;
+    for (int of = 0; of < 3; ++of) {
+      c.cp.held = of < 2 ? held : NULL;
+      c.cp.side_gap = of != 1 ? side : NULL;
+      ck_assert_int_eq(solve_by(&sor, &c, 1e-11).outcome, CONVERGED);
+      for (int i = 0; i < m && of == 0; ++i)
+        ck_assert_double_eq_tol(c.u[i], exact[i], 1e-7);
+    }
   }
 }
 
