@@ -87,7 +87,7 @@ static status node_value(const model *m, const mesh *msh, const load *l,
 int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
                 double t) {
   const mesh_group *g = &msh->group[l->group_id];
-  if (!quantity_variables(&l->value) && isfinite(l->value.number)) return 1;
+  if (!quantity_variables(&l->value)) return 1;
   for (int k = 0; k < g->n_node; ++k) {
     double value = load_at_node(l, msh, s, g->node_id[k], t);
     if (isfinite(value)) continue;

@@ -8,6 +8,8 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+#include <unistd.h>
+
 static const char *in_folder(const job *j, const char *file) {
   static char path[256];
   snprintf(path, sizeof path, "%s/%s", j->dir, file);
@@ -186,7 +188,9 @@ TEST(problem_of_three_dimensions_comes_back) {
       "TOP, 1, 1, 0.012\nTOP, 2, 2, 0.004\nTOP, 3, 3, -0.02\n"
       "*SOLVER, TOL=1e-13\n"
       "*OUTPUT, HDF5=NO, CONDENSED=FCLIB\n*PRINT, CONTACT\n*END STEP\n");
+  job_write(&j, "block_condensed_00003.h5", "of an earlier run");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  ck_assert_int_ne(access(in_folder(&j, "block_condensed_00003.h5"), F_OK), 0);
   check_file(&j, "block_condensed_00002.h5", 3);
   round_trip(&j, "", 0);
 }

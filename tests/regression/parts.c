@@ -34,7 +34,7 @@ static void errors_of(const job *j, int increment, double error[3]) {
 /* The load rises to its largest at the second increment and falls. */
 TEST(target_counts_all_errors_of_the_largest_increment) {
   JOB j = job_begin("block");
-  double error[3], largest[3] = {0}, most = 0, sum = 0;
+  double error[3], largest[3] = {0}, worst[3] = {0}, most = 0, sum = 0;
   int at = 0;
   block_file_write(&j, (int[]){16, 12}, (double[]){40.0, 30.0}, 0);
   job_write(&j, "block.inp",
@@ -51,6 +51,7 @@ TEST(target_counts_all_errors_of_the_largest_increment) {
   for (int k = 0; k < 4; ++k) {
     DAT e = job_table(&j, "ENERGY", k);
     errors_of(&j, k + 1, error);
+    for (int i = 0; i < 3; ++i) worst[i] = fmax(worst[i], error[i]);
     if (dat_at(&e, 0, "strain_energy") > most) {
       most = dat_at(&e, 0, "strain_energy");
       memcpy(largest, error, sizeof largest);
@@ -58,6 +59,12 @@ TEST(target_counts_all_errors_of_the_largest_increment) {
     }
   }
   ck_assert(at > 0 && at < 3);
+  static const char *const of[] = {"mesh_error_worst_percent",
+                                   "time_error_worst_percent",
+                                   "solver_error_worst_percent"};
+  for (int k = 0; k < 3; ++k)
+    ck_assert_double_eq_tol(job_told(&j, of[k]), worst[k], 0.06 * worst[k]);
+  ck_assert_double_gt(job_told(&j, of[0]), job_told(&j, "mesh_error_percent"));
   char *json = job_file(&j, "json"), *pass = strstr(json, "\"passes\"");
   static const char *const name[] = {
       "\"mesh_error_percent\": ", "\"time_error_percent\": ",

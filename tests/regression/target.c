@@ -410,9 +410,9 @@ static void forecast_row(const job *j, double level, double *unknowns,
 
 /* The order of the error in the unknowns from the three meshes that are told:
  * that of the two finer ones, or, if that is below 1/2, by least squares, up to
- * 1/2. */
+ * 1/2; that of the contact unknowns from the two, 1/4 to 1. */
 static void ck_order(const job *j) {
-  double e[3], n[3], x[3], y[3], order, xx = 0, xy = 0;
+  double e[3], n[3], x[3], y[3], c[2], order, power, xx = 0, xy = 0;
   const char *deck = strstr(j->text, "mesh of the deck: ");
   const char *fit = strstr(j->text, "error ~ unknowns^(-");
   ck_assert(deck != NULL && fit != NULL);
@@ -431,6 +431,16 @@ static void ck_order(const job *j) {
   double two = (y[1] - y[2]) / (x[2] - x[1]);
   if (two < 0.5) two = fmax(two, fmin(xy / xx, 0.5));
   ck_assert_double_eq_tol(order, fmin(two, 0.55), 0.02);
+  const char *contact = strstr(fit, "contact unknowns: ");
+  ck_assert_ptr_nonnull(contact);
+  ck_assert_int_eq(sscanf(contact,
+                          "contact unknowns: %*f, %lf and %lf, taken as "
+                          "unknowns^%lf",
+                          &c[0], &c[1], &power),
+                   3);
+  const double like = log(c[1] / c[0]) / (x[2] - x[1]);
+  ck_assert_double_eq_tol(
+      power, c[1] > c[0] ? fmin(fmax(like, 0.25), 1.0) : 0.5, 0.01);
 }
 
 /* The factor behind the memory of that row, in which the real one is. */

@@ -54,6 +54,10 @@ TEST(search_finds_what_is_along_a_beam) {
       b.low[k] = 0.4 * x[q + k] - 0.3;
       b.high[k] = b.low[k] + 0.01 * q;
     }
+    if (q % 5 == 1) { /* as thin as a point, which is in it */
+      memcpy(b.axis[0], (double[]){1, 0, 0}, sizeof b.axis[0]);
+      b.low[0] = b.high[0] = x[3 * q];
+    }
     int expected = 0;
     for (int i = 0; i < N; ++i) {
       int inside = 1;

@@ -4,6 +4,8 @@
 #include "support/made_up.h"
 #include "support/unit.h"
 
+#include <stddef.h>
+
 TEST(every_row_has_unit_help_scene_and_value) {
   const column *c;
   for (column_walk k = {0}; (c = column_next(&k)) != NULL;) {
@@ -103,6 +105,37 @@ TEST(columns_of_an_effect_wait_for_its_state) {
                     e->columns[i].name, e->name);
   }
   ck_assert_int_gt(n, 0);
+}
+
+/* Without one array of the state, those columns alone wait that need it. */
+TEST(columns_wait_for_what_they_need_alone) {
+#define WITHOUT(array, bits) \
+  { offsetof(state, array), bits }
+  static const struct {
+    size_t at;
+    unsigned bits;
+  } rows[] = {
+      WITHOUT(body.strain, NEEDS_STRAIN),
+      WITHOUT(body.stress, NEEDS_STRESS),
+      WITHOUT(body.reaction, NEEDS_REACTION),
+      WITHOUT(contacts.surface, NEEDS_SURFACE | NEEDS_PLACE | NEEDS_SEVERAL),
+      WITHOUT(contacts.limit, NEEDS_LIMIT),
+      WITHOUT(contacts.totals, NEEDS_TOTALS),
+      WITHOUT(contacts.distance, NEEDS_DISTANCE),
+      WITHOUT(contacts.torque, NEEDS_TORQUE),
+      WITHOUT(errors.elem_error, NEEDS_ELEM_ERROR),
+      WITHOUT(body.flow, NEEDS_FLOW | NEEDS_ALPHA)};
+  MADE_UP *made = made_up_new(3, 2, 3);
+  made_up_advance(made, 2);
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+    state s = made->s;
+    const column *c;
+    memset((char *)&s + rows[k].at, 0, sizeof(void *));
+    for (column_walk w = {0}; (c = column_next(&w)) != NULL;)
+      ck_assert_msg(!column_visible(c, &made->m) ||
+                        column_ready(c, &s) == !(c->needs & rows[k].bits),
+                    "%s", c->name);
+  }
 }
 
 static const column *named(const made_up *made, entity of, const char *name) {

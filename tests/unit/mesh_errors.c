@@ -316,6 +316,34 @@ TEST(bodies_that_hardly_enter_each_other_touch) {
   }
 }
 
+/* Only the plane of two edges that cross, or of one side below a corner, is
+ * between them; oblique, so that their boxes overlap; pushed into each other.
+ */
+TEST(tetrahedra_apart_by_one_plane_alone) {
+  static const double below[2][4][3] = {
+      {{-1, 0, 0}, {1, 0, 0}, {0, -1, -1}, {0, 1, -1}},
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}};
+  static const double above[2][4][3] = {
+      {{0, -1, 0}, {0, 1, 0}, {-1, 0, 1}, {1, 0, 1}},
+      {{0.25, 0.25, 0}, {0.2, 0.2, 5}, {0.3, 0.2, 5.7}, {0.2, 0.3, 6.1}}};
+  MESH_FILE f = mesh_file_open();
+  for (int k = 0; k < 4; ++k) {
+    char nodes[800] = "8\n";
+    for (int i = 0; i < 8; ++i) {
+      const double *x = i < 4 ? below[k / 2][i] : above[k / 2][i - 4];
+      const double lift = i < 4 ? 0 : k % 2 ? -0.01 : 0.01;
+      sprintf(nodes + strlen(nodes), "%d %.17g %.17g %.17g\n", i + 1, x[0],
+              x[1], x[2] + lift + 0.5 * x[0] + 0.5 * x[1]);
+    }
+    PRINTED(text,
+            MSH(BODY_3D, "%s", "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 5 6 7 8\n"),
+            nodes);
+    OWNED mesh *m = mesh_file_text(&f, "t.msh", text);
+    ck_assert_msg((strstr(f.messages, "overlap") != NULL) == k % 2, "%d: %s", k,
+                  f.messages);
+  }
+}
+
 /* A triangle in an element of a square that has no side on its boundary. */
 TEST(body_inside_of_another_is_seen) {
   MESH_FILE f = mesh_file_open();

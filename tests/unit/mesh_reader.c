@@ -358,6 +358,9 @@ TEST(rubbish_from_the_reader_is_refused) {
     close(ends[1]);
     raw_mesh *raw = memory_new(1, sizeof *raw);
     ck_assert_int_eq(raw_receive(ends[0], raw, &stopped), ERR_MESH);
+    if (i < 3) /* by its head */
+      ck_assert_msg(strstr(status_message(), "what is no mesh") != NULL, "%s",
+                    status_message());
     ck_assert_int_eq(stopped, n == 3); /* the last one is cut off */
     memory_free(raw);
     close(ends[0]);

@@ -370,6 +370,25 @@ TESTS(energies_and_errors_are_the_same, HELD) {
   both_free(&b);
 }
 
+/* Rows that supports hold are solved too, and count in the energy f'inv(A)f. */
+TESTS(held_rows_are_solved, HELD) {
+  both b = both_new(_i);
+  const size_t m = (size_t)b.m;
+  double energy, work = 0;
+  FREED double *f = numbers(m, 5), *u = get(m);
+  for (size_t i = 0; i < m; ++i) f[i] *= b.A[i * (m + 1)];
+  ck_assert_int_eq(condensed_untouched(b.dense, f, u), OK);
+  ck_assert_int_eq(condensed_force_energy(b.dense, f, &energy), OK);
+  for (size_t i = 0; i < m; ++i) {
+    double sum = 0;
+    for (size_t j = 0; j < m; ++j) sum += b.A[i + m * j] * u[j];
+    ck_assert_double_eq_tol(sum, f[i], 1e-10 * b.size);
+    work += f[i] * u[i];
+  }
+  ck_assert_double_eq_tol(energy / work, 1, 1e-10);
+  both_free(&b);
+}
+
 /* A power of two in the moduli leaves every bit of a solve. */
 TEST(power_of_two_in_the_moduli_leaves_every_bit) {
   double *found[2] = {NULL, NULL};

@@ -157,6 +157,24 @@ static void brick(layers *l, double contrast) {
   two_moduli(l, contrast, (double[]){0.2, 0, 1, 1});
 }
 
+/* About the edge x = 0, z = 2. */
+static void swing(const double *x, int k, double *u) {
+  u[0] = x[2] - 2;
+  u[1] = 0;
+  u[2] = -x[0];
+}
+
+/* Supports along an edge leave a turn about it. */
+static void door(layers *l, double contrast) {
+  brick(l, contrast);
+  for (int i = 0; i < l->s->m->n_node; ++i)
+    for (int c = 0; c < 3; ++c)
+      if (l->s->m->x[3 * i] == 0 && l->s->m->x[3 * i + 2] == 2)
+        scene_fix_node(l->s, i, c);
+  l->n_motion = 1;
+  l->motion = swing;
+}
+
 static void stacked(layers *l, const char *joints, const int *cells,
                     const int *set, double contrast) {
   l->blocks = stack_new(joints, cells, 0);
@@ -198,9 +216,15 @@ static void gap_of_a_tie(layers *l, double contrast) {
   l->n_motion = 2;
 }
 
+/* Each on an obstacle of its own. */
+static void apart(layers *l, double contrast) {
+  stacked(l, "OO", (int[]){3, 4}, (int[]){0, 1}, contrast);
+}
+
 static void (*const scenes[])(layers *, double) = {
-    column, block,       stiff_foot,  disc,  hinged,   small_foot,  one_foot,
-    brick,  upper_slave, lower_slave, tower, sandwich, gap_of_a_tie};
+    column,     block,    stiff_foot,   disc,        hinged,
+    small_foot, one_foot, brick,        upper_slave, lower_slave,
+    tower,      sandwich, gap_of_a_tie, apart,       door};
 static const double contrasts[] = {1, 1e6, 1e8};
 enum { SCENES = sizeof scenes / sizeof *scenes, CASES = 3 * SCENES };
 
