@@ -14,6 +14,7 @@
 #include <hdf5.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -190,13 +191,16 @@ TEST(signals_come_together) {
   ck_assert(job_has(&j, "json") && job_has(&j, "rst.h5"));
 }
 
+/* Nor does a folder of the name of the file end the run. */
 TEST(ignored_signals_stay_ignored) {
   JOB j = block(MANY);
+  PRINTED(folder, "%s/block.stop", j.dir);
   n_ignored = 4;
   pid_t pid = start(&j, 0);
   n_ignored = 0;
   wait_for(&j, pid, SOME);
   for (size_t k = 0; k < 4; ++k) kill(pid, requests[k].number);
+  ck_assert_int_eq(mkdir(folder, 0777), 0);
   int last, before = lines_of(&j, &last);
   wait_for(&j, pid, before + SOME);
   kill(pid, SIGTERM);

@@ -35,7 +35,8 @@ TEST(search_finds_what_is_near) {
   }
 }
 
-/* Points as items: those between the planes of each slab. */
+/* Points as items: those between the planes of each slab, and on them, as many
+ * of these numbers of three binary digits are. */
 TEST(search_finds_what_is_along_a_beam) {
   enum { N = 400 };
   double x[3 * N];
@@ -43,7 +44,7 @@ TEST(search_finds_what_is_along_a_beam) {
   unsigned seed = 5;
   for (int i = 0; i < 3 * N; ++i) {
     seed = seed * 1103515245u + 12345u;
-    x[i] = (seed >> 16) / 65536.0;
+    x[i] = (seed >> 29) / 8.0;
   }
   box_tree t;
   ck_assert_int_eq(box_tree_new(3, N, 1, x, &t), OK);
@@ -51,8 +52,8 @@ TEST(search_finds_what_is_along_a_beam) {
     box_beam b = {.n_slab = q % 4};
     for (int k = 0; k < b.n_slab; ++k) {
       for (int c = 0; c < 3; ++c) b.axis[k][c] = x[9 * q + 3 * k + c] - 0.5;
-      b.low[k] = 0.4 * x[q + k] - 0.3;
-      b.high[k] = b.low[k] + 0.01 * q;
+      b.low[k] = 0.5 * x[q + k] - 0.25;
+      b.high[k] = b.low[k] + q / 64.0;
     }
     if (q % 5 == 1) { /* as thin as a point, which is in it */
       memcpy(b.axis[0], (double[]){1, 0, 0}, sizeof b.axis[0]);

@@ -55,6 +55,7 @@ static status count(void *ctx, const state *s, const char *why) {
 /* A solver that gives up, leaving rubbish, when the load has grown by more
  * than picky_step since its last answer; otherwise newton. */
 static double picky_step, picky_last;
+static outcome picky_outcome = STOPPED_ITERATIONS;
 
 static double load_size(const contact_problem *cp) {
   double sum = 0.0;
@@ -69,7 +70,7 @@ static status picky_solve(const contact_problem *cp, const void *par,
   if (fabs(size - picky_last) > picky_step * (1 + 1e-9) ||
       (picky_dt > 0.0 && try_dt > picky_dt)) {
     for (int i = 0; i < cp->m; ++i) u[i] = r[i] = 1e3 * (i + 1);
-    rep->outcome = STOPPED_ITERATIONS;
+    rep->outcome = picky_outcome;
     return OK;
   }
   picky_last = size;
@@ -175,6 +176,18 @@ TEST(increment_that_cannot_be_cut_further_is_unsettled) {
   ck_assert_int_eq(r.unsettled, r.accepted);
   ck_assert_int_gt(r.rejected, 0);
   ck_assert_double_eq(r.t[r.accepted - 1], 1.0);
+}
+
+/* Where a method stagnates, adapted increments are cut once, fixed ones not. */
+TESTS(cuts_end_where_they_do_not_help, 2) {
+  PRINTED(adapted,
+          HISTORY(MAXWELL, LOCAL, "", STILL,
+                  "*VISCO, INTEGRATOR=HEUN, TOLERANCE=1."),
+          "0.5");
+  picky_outcome = STOPPED_STAGNATION;
+  run_record r = run_deck(_i == 0 ? DECK(0.5) : adapted, 1e-3);
+  ck_assert_int_eq(r.rejected, _i == 1);
+  ck_assert_int_eq(r.unsettled, r.accepted);
 }
 
 TEST(energies_balance_at_every_increment) {
