@@ -303,10 +303,14 @@ TEST(temperatures_that_vary_within_elements) {
        SIDES "TOP, 2\n*TEMPERATURE\nSOFT, \"20*(1-x)\"\n"
              "HARD, \"20*(1-x)\"\n",
        {{1, 0.026 / 3.0, 0.9, 1.1, 0.5}}},
+      {{1.0, 1e-3, "CAX3", NULL},
+       SIDES "TOP, 2\n*DLOAD\nSOFT, BX, \"100*x\"\nHARD, BX, \"100*x\"\n"
+             "*TEMPERATURE\nSOFT, \"20*(1-x)\"\nHARD, \"20*(1-x)\"\n",
+       {{5, 1.4336633, 0.9, 1.1, 1.5}}},
       {{2.0, 1e-3, "CAX3", NULL},
        WALLS WAVE SLOPES,
        {{0, -0.0043053987, 0.9, 1.1, 0.5}, {2, 0.00088629567, 0.5, 1.5, 3.0}}}};
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 5; ++k) {
     JOB j = of_layers(rows[k].of, rows[k].cards);
     for (int i = 0; i < 3 && rows[k].is[i].wide > 0.0; ++i) {
       const expected *e = &rows[k].is[i];

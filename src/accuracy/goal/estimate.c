@@ -26,8 +26,9 @@
  * Strains without stress e0 count with z: its stress s_z is that of u_h, E (e -
  * e0), less that of y, and the same holds for it. Where they vary within an
  * element by d0 from their mean there, the error e_z of its stress has a part
- * E d0, which does no work on the mean: less the integral of e_z : d0. By the
- * residual of z that is the integral of s_u : d0, of the hoop that varies.
+ * E d0, which does no work on the mean: less the integral of e_z : d0. Where
+ * the hoop strains of s_y, by the residual of z those of s_u, vary in an
+ * axisymmetric element, they do work on it.
  */
 #include "accuracy/goal/goal.h"
 
@@ -619,15 +620,17 @@ static double eigen_product(const goal_estimator *e, int elem_id,
          space_product(e->recovery, elem_id, u, &eigen, &square);
 }
 
-/* Less the integral of the stress of u by what its hoop strain varies : d0. */
-static double axi_varied(const goal_estimator *e, int elem_id) {
+/* Less the integral of the stress of v[2*n_node] by what its hoop strain varies
+ * : d0. */
+static double axi_varied(const goal_estimator *e, int elem_id,
+                         const double *v) {
   const mesh *m = e->s.d->mesh;
   const int *node = m->elem + 3 * elem_id;
   double sum = 0.0;
   if (!is_axi(e, elem_id) || e->eigen == NULL) return 0.0;
   for (int p = 0; p < 3; ++p) {
     double r, d0 = -e->eigen[4 * elem_id + 2];
-    const double hoop = axi_hoop(m, elem_id, p, e->s.u, &r);
+    const double hoop = axi_hoop(m, elem_id, p, v, &r);
     for (int a = 0; a < 3; ++a)
       d0 += AXI_RULE[a == p] * e->node_eigen[4 * node[a] + 2];
     sum -= r * hoop * d0;
@@ -651,10 +654,12 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
                           : product;
   if (of_u) {
     const double varied = eigen_product(e, elem_id, &u, &of_y);
+    const double of_w = axi_varied(e, elem_id, y);
+    const double of_own = axi_varied(e, elem_id, e->s.u);
     product = like;
     out->error +=
-        0.5 * e->by_given * (given + product + varied) +
-        (1.0 - e->by_given) * (0.5 * (residual + own) + axi_varied(e, elem_id));
+        0.5 * (e->by_given * (given + product + varied + of_w) +
+               (1.0 - e->by_given) * (residual + own + of_own) + of_own);
     out->magnitude += fabs(given) + fabs(varied);
   } else {
     out->error += residual;
