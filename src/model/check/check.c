@@ -382,7 +382,7 @@ static int has_component(const model *m, const mesh *msh, const goal_card *g) {
   if (g->component - GOAL_TENSOR >= m->ns) return 0;
   if (g->component >= GOAL_NORMAL) return 1;
   if (g->quantity == GOAL_MOMENT && msh->dim == 2 && m->n.section > 0)
-    return g->component == 2 && m->sections[0].kin != AXISYMMETRIC;
+    return g->component == 2;
   return g->component < msh->dim;
 }
 
@@ -393,6 +393,13 @@ static void check_moment(const model *m, const mesh *msh, goal_card *g) {
   if (msh->dim == 3)
     message_add(m->log, P2007, &g->at,
                 "*GOAL, QUANTITY=MOMENT needs COMPONENT= in space");
+}
+
+/* What axisymmetric bodies have none of; NULL: another goal. */
+static const char *round_the_axis(const goal_card *g) {
+  return g->quantity == GOAL_SIF      ? "stress intensity factors"
+         : g->quantity == GOAL_MOMENT ? "moments"
+                                      : NULL;
 }
 
 static void check_goal(const model *m, const mesh *msh, goal_card *g) {
@@ -407,11 +414,10 @@ static void check_goal(const model *m, const mesh *msh, goal_card *g) {
     g->group_id = check_group_of(m, msh, g->group, msh->dim, &g->group_at);
   else if (g->group != NULL)
     g->group_id = check_group(m, msh, g->group, &g->group_at);
-  if (g->quantity == GOAL_SIF && model_is_axisymmetric(m))
+  if (model_is_axisymmetric(m) && round_the_axis(g) != NULL)
     message_add(m->log, P2024, &g->at,
-                "*GOAL %s: there are no stress intensity factors of "
-                "axisymmetric bodies",
-                g->name);
+                "*GOAL %s: there are no %s of axisymmetric bodies", g->name,
+                round_the_axis(g));
   else if (!has_component(m, msh, g))
     message_add(m->log, P2024, &g->at,
                 "*GOAL %s: a mesh in %d-D has no such component", g->name,
