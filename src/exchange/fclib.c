@@ -159,8 +159,8 @@ static status read_dense(const hdf5_source *s, const char *name, int rows,
                          int columns, double **a) {
   OWNED_PARTS(triplets, t, triplets_read(s, name, &t));
   if (t.rows != rows || t.columns != columns)
-    RAISE(ERR_DECK, "%s: %s has %d rows and %d columns, expected %d and %d",
-          s->path, name, t.rows, t.columns, rows, columns);
+    RAISE(ERR_DECK, "%s: %s is %d x %d, expected %d x %d", s->path, name,
+          t.rows, t.columns, rows, columns);
   PASS_NEW(*a, (size_t)rows * columns);
   triplets_dense(&t, *a);
   return OK;
@@ -189,8 +189,8 @@ static status read_local(const hdf5_source *s, exchange_problem *p) {
   p->form = "FCLIB, local";
   PASS(triplets_size(s, LOCAL "/W", &size));
   if (size.rows != size.columns)
-    RAISE(ERR_DECK, "%s: " LOCAL "/W is not square: %d rows, %d columns",
-          s->path, size.rows, size.columns);
+    RAISE(ERR_DECK, "%s: " LOCAL "/W is not square: %d x %d", s->path,
+          size.rows, size.columns);
   PASS(set_size(s, LOCAL, size.rows, p));
   OWNED_PARTS(triplets, W, triplets_read(s, LOCAL "/W", &W));
   if (triplets_triangle(&W) != 0)
@@ -230,8 +230,8 @@ static status read_matrices(const hdf5_source *s, global *g) {
     RAISE(ERR_DECK, "%s: " GLOBAL "/G has %d rows, M has %d", s->path,
           g->G.rows, g->M.rows);
   if (g->M.rows != g->M.columns)
-    RAISE(ERR_DECK, "%s: " GLOBAL "/M is not square: %d rows, %d columns",
-          s->path, g->M.rows, g->M.columns);
+    RAISE(ERR_DECK, "%s: " GLOBAL "/M is not square: %d x %d", s->path,
+          g->M.rows, g->M.columns);
   if (g->H.rows != g->M.rows)
     RAISE(ERR_DECK, "%s: " GLOBAL "/H has %d rows, M has %d", s->path,
           g->H.rows, g->M.rows);

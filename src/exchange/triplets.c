@@ -97,8 +97,7 @@ status triplets_size(const hdf5_source *s, const char *group, triplets *t) {
   PASS(group_int(s, group, "m", &t->rows));
   PASS(group_int(s, group, "n", &t->columns));
   if (t->rows < 0 || t->columns < 0)
-    RAISE(ERR_DECK, "%s: %s has %d rows and %d columns", s->path, group,
-          t->rows, t->columns);
+    RAISE(ERR_DECK, "%s: %s is %d x %d", s->path, group, t->rows, t->columns);
   return OK;
 }
 

@@ -35,9 +35,10 @@ static void must_be_coarser(const job *j) {
   FREED char *lst = job_file(j, "lst");
   const char *at = strstr(lst, told);
   ck_assert_ptr_nonnull(at);
-  ck_assert_int_eq(sscanf(at + strlen(told), " (%d contact nodes): %d of %d",
-                          &coarse, &other, &all),
-                   3);
+  ck_assert_int_eq(
+      sscanf(at + strlen(told), " (%d contact node%*[s)]: %d of %d", &coarse,
+             &other, &all),
+      3);
   ck_assert_msg(coarse >= 0.2 * all && coarse <= 0.71 * all, "%d of %d", coarse,
                 all);
 }

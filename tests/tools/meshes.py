@@ -206,8 +206,8 @@ class Meshes(unittest.TestCase):
         self.assertEqual(code, 0, said)
         self.assertCountEqual(groups, ["ALL: 1 points", "G: 3 points",
                                        "ALL_ELEMENTS: 1 triangles"])
-        self.assertEqual(said, "abaqus_mesh: ALL has 1 numbers that the model "
-                         "has not, the first 7\n")
+        self.assertEqual(said, "abaqus_mesh: ALL: numbers that the model has "
+                         "not: 1, the first 7\n")
 
     def test_what_is_not_read_is_refused(self):
         model = self.dir / "model.inp"

@@ -203,7 +203,7 @@ TEST(of_two_obstacles_that_behind_the_body_is_none) {
           c.s->gap0[i], away[near] - sqrt(radius[near] * radius[near] - 0.25),
           1e-14);
     }
-    ck_assert_int_eq(faces_said(&c, "2 nodes cannot reach"), 2);
+    ck_assert_int_eq(faces_said(&c, "2 of its nodes"), 2);
     for (int k = 0; k < 2; ++k) formula_release(&c.support[k].motion[1]);
   }
 }

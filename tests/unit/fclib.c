@@ -147,8 +147,8 @@ static const struct misfit {
   const char *group;
   int rows, columns, row;
   const char *text;
-} misfits[] = {{"/fclib_local/V", 3, 1, 1, "V has 3 rows and 1 columns"},
-               {"/fclib_local/V", 2, 2, 1, "V has 2 rows and 2 columns"},
+} misfits[] = {{"/fclib_local/V", 3, 1, 1, "V is 3 x 1"},
+               {"/fclib_local/V", 2, 2, 1, "V is 2 x 2"},
                {"/fclib_local/V", 2, 1, 0, "one is missing"},
                {"/fclib_local/X", 1, 1, 1, "one is missing"},
                {"/fclib_global/M", 2, 3, 0, "M is not square"},

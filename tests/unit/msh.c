@@ -277,8 +277,8 @@ static const struct { const char *from, *to, *message; } damages[] = {
    "which $Entities does not list"},
   {"2 5 2 2", "4 5 2 2", ":32: a block of dimension 4"},
   {"2 5 2 2", "2 5 2 5", ":32: a block of 5 where 4 of the section are left"},
-  {"3 4 7 10", "3 5 7 10", ":39: the blocks of the section have 1 elements "
-   "less than its first line says"},
+  {"3 4 7 10", "3 5 7 10", ":39: the blocks of the section lack 1 of the "
+   "elements that its first line says"},
 };
 /* clang-format on */
 

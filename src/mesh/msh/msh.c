@@ -439,7 +439,7 @@ static status check_total(const scan *s, size_t left, const char *what) {
   return left == 0
              ? OK
              : scan_fail(s,
-                         "the blocks of the section have %zu %s less than "
+                         "the blocks of the section lack %zu of the %s that "
                          "its first line says",
                          left, what);
 }

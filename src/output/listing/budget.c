@@ -155,8 +155,10 @@ static void print_saved(const job *j, FILE *f) {
 static void print_budget(const job *j, FILE *f) {
   budget_row rows[BUDGET_ROWS];
   int n = job_budget(j, rows), cost = !j->o->no_timing;
+  budget_row none;
   const int not_asked = j->run->n_increment > 0 && path_counts(j->m) &&
-                        !(j->m->effects & EFFECT_TIME_ERROR);
+                        !(j->m->effects & EFFECT_TIME_ERROR) &&
+                        !collect(j->run, time_share, &none);
   if (n == 0 && !not_asked) return;
   fprintf(f, "\n  %-26s %12s %12s", "error in the energy norm", "last[%]",
           "largest[%]");
