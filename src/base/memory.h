@@ -28,13 +28,11 @@
   item < item##_end;                                              \
   ++item
 
-/* NEW_REALS(n, &a, &b, ...): n zeroed numbers for each, or FAIL. */
-#define NEW_REALS(n, ...) TRY(REALS(n, __VA_ARGS__))
-#define PASS_NEW_REALS(n, ...) PASS(REALS(n, __VA_ARGS__))
-#define REALS(n, ...)                                                      \
-  memory_reals((size_t)(n),                                                \
-               (int)(sizeof((double **[]){__VA_ARGS__}) / sizeof(void *)), \
-               (double **[]){__VA_ARGS__})
+/* PASS_NEW_REALS(n, &a, &b, ...): n zeroed numbers for each, or RAISE. */
+#define PASS_NEW_REALS(n, ...)                                                 \
+  PASS(memory_reals(                                                           \
+      (size_t)(n), (int)(sizeof((double **[]){__VA_ARGS__}) / sizeof(void *)), \
+      (double **[]){__VA_ARGS__}))
 
 /* NEW(a, n), NEW_ALL(OF(a, n), OF(b, m), ...): n zeroed items for each of what
  * the pointer points to, or FAIL. */

@@ -121,9 +121,7 @@ static status keep(message_log *log, const message *m) {
   return OK;
 }
 
-int message_wanted(const message_log *log, severity s) {
-  return log->count[s] < KEPT;
-}
+int message_wanted(const message_log *log) { return log->count[ERROR] < KEPT; }
 
 void message_memory(message_log *log) { log->no_memory = 1; }
 

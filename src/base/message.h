@@ -63,9 +63,9 @@ typedef struct message_view {
   const char *text;
 } message_view;
 int message_get(const message_log *log, int k, message_view *out);
-/* 1 while one more message of that severity would be stored: a search for
- * advice (nearest_word) is not needed once they are only counted. */
-int message_wanted(const message_log *log, severity s);
+/* 1 while one more error would be stored: a search for advice (nearest_word) is
+ * not needed once they are only counted. */
+int message_wanted(const message_log *log);
 /* Print all of them, in the order of the files and lines (at one place the
  * errors first), and the totals. */
 void message_print(const message_log *log, FILE *out);

@@ -398,21 +398,17 @@ static void reader_free(reader *r) {
 
 status deck_read(const char *file, int n_define, const char *const *defines,
                  message_log *log, deck **out) {
-  status st = OK;
-  reader r = {.log = log, .mode = DATA_EARLY};
   *out = NULL;
-  PASS_NEW(r.d, 1);
-  OWNS(r.d);
-  NEW(r.d->own, 1);
-  TRY(source_open(r.d, log, file, NULL, &r.top));
-  if (r.top == NULL) FAIL(ERR_FILE, "cannot read %s", file);
-  r.d->file = r.d->files[0];
-  for (int i = 0; i < n_define; ++i) TRY(symbols_from_command(&r, defines[i]));
-  TRY(read_all(&r));
-  *out = r.d;
-  r.d = NULL;
-done:
-  reader_free(&r);
-  memory_free(r.d);
-  return st;
+  OWNED_NEW(deck, d, 1);
+  reader r ENDS_BY(reader_free) = {.log = log, .d = d, .mode = DATA_EARLY};
+  OWNS(d);
+  PASS_NEW(d->own, 1);
+  PASS(source_open(d, log, file, NULL, &r.top));
+  if (r.top == NULL) RAISE(ERR_FILE, "cannot read %s", file);
+  d->file = d->files[0];
+  for (int i = 0; i < n_define; ++i) PASS(symbols_from_command(&r, defines[i]));
+  PASS(read_all(&r));
+  *out = d;
+  d = NULL;
+  return OK;
 }

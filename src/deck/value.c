@@ -28,7 +28,7 @@ static void advise(const deck *d, const message_log *log, const char *name,
   const char *near = NULL;
   advice[0] = '\0';
   const int n = d->n_symbol < ADVICE_MAX ? d->n_symbol : ADVICE_MAX;
-  if (message_wanted(log, ERROR))
+  if (message_wanted(log))
     near = nearest_word(name, candidate_name, NAMES(d->symbols, n));
   if (near != NULL)
     snprintf(advice, ADVICE_SIZE, "; did you mean %.1s%s%s?", marks, near,

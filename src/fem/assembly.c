@@ -362,24 +362,21 @@ static status list_coupling(stiffness *k) {
 }
 
 status stiffness_assemble(const domain *d, stiffness **out) {
-  status st = OK;
-  stiffness *k = NULL;
   *out = NULL;
   TIMED(STAGE_ASSEMBLY);
-  PASS_NEW(k, 1);
+  OWNED_NEW(stiffness, k, 1);
   OWNS(k);
   k->dim = d->mesh->dim;
   k->rows = d->rows > 0 ? d->rows : k->dim;
   k->n_node = d->mesh->n_node;
-  TRY(coupling_new(d, &k->moved));
-  TRY(find_graph(d, k));
-  TRY(add_elements(d, k));
-  TRY(add_clusters(d, k));
-  TRY(mark_unknowns(d, k));
+  PASS(coupling_new(d, &k->moved));
+  PASS(find_graph(d, k));
+  PASS(add_elements(d, k));
+  PASS(add_clusters(d, k));
+  PASS(mark_unknowns(d, k));
   turn_blocks(d, k);
-  TRY(list_coupling(k));
-done:
-  if (st != OK) FORGET(k);
+  PASS(list_coupling(k));
   *out = k;
-  return st;
+  k = NULL;
+  return OK;
 }

@@ -205,29 +205,25 @@ static void tell_warnings(const builder *b) {
 
 status build_mesh(const raw_mesh *raw, double scale, const place *at,
                   message_log *log, mesh **out) {
-  status st = OK;
-  builder b = {.raw = raw, .scale = scale, .at = at, .log = log};
-  b.errors = message_count(log, ERROR);
   *out = NULL;
-  PASS_NEW(b.m, 1);
-  OWNS(b.m);
-  NEW(b.first, raw->n_block);
-  TRY(groups_check(&b));
+  OWNED_NEW(mesh, m, 1);
+  builder b ENDS_BY(release) = {
+      .raw = raw, .scale = scale, .at = at, .log = log, .m = m};
+  b.errors = message_count(log, ERROR);
+  OWNS(m);
+  PASS_NEW(b.first, raw->n_block);
+  PASS(groups_check(&b));
   tell_warnings(&b);
-  TRY(elements_gather(&b));
-  TRY(nodes_order(&b));
-  TRY(elements_finish(&b));
-  TRY(faces_finish(&b));
-  TRY(groups_fill(&b));
-  TRY(overlap_check(&b));
-  TRY(nodes_coincident(&b));
-done:
-  release(&b);
-  if (st != OK)
-    memory_free(b.m);
-  else
-    *out = b.m;
-  return st;
+  PASS(elements_gather(&b));
+  PASS(nodes_order(&b));
+  PASS(elements_finish(&b));
+  PASS(faces_finish(&b));
+  PASS(groups_fill(&b));
+  PASS(overlap_check(&b));
+  PASS(nodes_coincident(&b));
+  *out = m;
+  m = NULL;
+  return OK;
 }
 
 enum { HEAD_SIZE = 4096, TAIL_SIZE = 256 };

@@ -14,6 +14,10 @@
     return (double)(expression);                        \
   }
 
+/* A word, of the view v and the item id. */
+#define WORD_OF(name, expression) \
+  static const char *name(const view *v, int id) { return expression; }
+
 /* Place of a component in an array of "stride" components an item. */
 static inline size_t at(int stride, int id, int part) {
   return (size_t)stride * (size_t)id + (size_t)part;

@@ -212,7 +212,7 @@ typedef struct effect_ops {
   int n_column;
   int of_state; /* 1: they read struct state alone, also of *CONDENSED PROBLEM,
                    which makes no effects */
-  int (*items)(const void *own); /* rows of its own table */
+  size_t items; /* of the state: the int that counts rows of its own table */
 } effect_ops;
 
 /* The table of effects (src/effects/rows.h) is passed in by the caller. */

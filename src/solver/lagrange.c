@@ -184,8 +184,7 @@ static status lagrange_solve(const contact_problem *cp, const void *par,
   w->best.residual = HUGE_VAL;
   PASS(force_set_fit(w->set, cp));
   rep->outcome = steps(&s, rep);
-  rep->residual = w->best.residual;
-  solver_take_best(&w->best, cp->m, u, r);
+  rep->residual = solver_take_best(&w->best, cp->m, u, r);
   return OK;
 }
 

@@ -396,8 +396,7 @@ static status pcg_solve(const contact_problem *cp, const void *par, void *work,
   PASS(force_set_fit(w->set, cp));
   rep->outcome = phases(&s);
   rep->iterations = s.steps;
-  rep->residual = w->best.residual;
-  solver_take_best(&w->best, cp->m, u, r);
+  rep->residual = solver_take_best(&w->best, cp->m, u, r);
   return OK;
 }
 

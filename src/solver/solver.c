@@ -71,8 +71,10 @@ void solver_keep_best(best_iterate *best, int m, double residual,
   COPY(best->r, r, m);
 }
 
-void solver_take_best(const best_iterate *best, int m, double *u, double *r) {
-  if (!(best->residual < HUGE_VAL)) return;
-  COPY(u, best->u, m);
-  COPY(r, best->r, m);
+double solver_take_best(const best_iterate *best, int m, double *u, double *r) {
+  if (best->residual < HUGE_VAL) {
+    COPY(u, best->u, m);
+    COPY(r, best->r, m);
+  }
+  return best->residual;
 }

@@ -147,8 +147,8 @@ typedef struct best_iterate {
 status best_iterate_new(int m, best_iterate *best);
 void solver_keep_best(best_iterate *best, int m, double residual,
                       const double *u, const double *r);
-/* Copy it to u, r if there is one. */
-void solver_take_best(const best_iterate *best, int m, double *u, double *r);
+/* Copy it to u, r if there is one; its residual. */
+double solver_take_best(const best_iterate *best, int m, double *u, double *r);
 
 /* How the solver knows the condensed stiffness: by the expected cost, its
  * entries, or products and solves (contact/operator.h). */

@@ -187,11 +187,6 @@ static status cracks_new(run *r, void **self) {
   return new_cracks(r, own);
 }
 
-static status cracks_copy(const run *r, const void *of, run *copy,
-                          void **self) {
-  return cracks_new((run *)r, self);
-}
-
 /* ---- an increment -------------------------------------------------------- */
 
 /* The gradient of P1 function "node" along the shift of another, -. */
@@ -519,10 +514,6 @@ static effect_work expected(const plan_sizes *s) {
 
 static int factors_due(const run *r) { return table_is_due_now(r, PRINT_SIF); }
 
-static int tips_items(const void *self) {
-  return ((const crack_state *)self)->n;
-}
-
 static const tip *tip_of(const view *v, int id) {
   const crack_state *own = effect_state(v->s->effects, &cracks_effect);
   return &own->tips[id];
@@ -538,11 +529,6 @@ static double tip_rate(const view *v, int id, int part) {
   return part == 0 ? f->J : f->J_scatter;
 }
 
-static double tip_creep(const view *v, int id, int part) {
-  const tip *t = tip_of(v, id);
-  return part == 0 ? t->creep : t->creep_scatter;
-}
-
 #include "run/column_row.h"
 
 VALUE(crack_no, point_of(v, id)->crack + 1)
@@ -551,12 +537,11 @@ VALUE(tip_x, point_of(v, id)->origin[part])
 VALUE(tip_K, tip_of(v, id)->found.K[part])
 VALUE(tip_scatter, tip_of(v, id)->found.K_scatter[part])
 VALUE(tip_jump, tip_of(v, id)->jump[part])
+VALUE(tip_creep, tip_of(v, id)->creep)
+VALUE(tip_creep_scatter, tip_of(v, id)->creep_scatter)
 VALUE(tip_radius, point_of(v, id)->radius)
 
-static const char *crack_word(const view *v, int id) {
-  return v->m->mesh.cracks[point_of(v, id)->crack].name;
-}
-
+WORD_OF(crack_word, v->m->mesh.cracks[point_of(v, id)->crack].name)
 /* clang-format off */
 #define TIP PER_TIP, AS_REAL, PRINT_SIF, 0
 #define STRESS_ROOT "force/length^1.5"
@@ -595,7 +580,7 @@ static const column columns[] = {
  0, NULL, 0, tip_creep, NULL, "C(t), the integral of G with the rates of the "
  "increment: in *VISCO steps, of laws linear in the stress and of NORTON"},
 {"C_t_scatter", "force/length/time", PER_TIP, AS_REAL, PRINT_SIF,
- ON(INELASTIC), CART, 0, NULL, 1, tip_creep, NULL, scatter_help},
+ ON(INELASTIC), CART, 0, NULL, 0, tip_creep_scatter, NULL, scatter_help},
 {"K_I_jump", STRESS_ROOT, TIP, SCENE_PLANE, 0, NULL, 0, tip_jump, NULL,
  jump_help},
 {"K_II_jump", STRESS_ROOT, TIP, SCENE_PLANE, 0, NULL, 1, tip_jump, NULL,
@@ -607,8 +592,7 @@ const effect_ops cracks_effect = {
   .name = "stress intensity factors", .bit = NO_BIT,
   .required = requires_factors, .expected = expected,
   .table = {PRINT_SIF, PER_TIP}, .size = sizeof(crack_state),
-  .items = tips_items,
-  .on = {.create = cracks_new, .due = factors_due, .accept = find_factors,
-         .copy = cracks_copy},
+  .items = offsetof(crack_state, n), .copy_as = COPY_IS_NEW,
+  .on = {.create = cracks_new, .due = factors_due, .accept = find_factors},
   COLUMNS_OF(columns)};
 /* clang-format on */

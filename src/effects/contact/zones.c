@@ -411,10 +411,6 @@ static int zones_due(const run *r) {
   return r->nodes.n > 0 && table_is_due_now(r, PRINT_ZONES);
 }
 
-static int zones_items(const void *self) {
-  return ((const zone_list *)self)->n;
-}
-
 static const contact_zone *zone_of(const view *v, int id) {
   const zone_list *own = effect_state(v->s->effects, &zones_effect);
   return &own->zone[id];
@@ -428,14 +424,8 @@ VALUE(zone_to, zone_of(v, id)->to[part])
 VALUE(zone_length, zone_of(v, id)->length)
 VALUE(zone_area, zone_of(v, id)->area)
 
-static const char *zone_word(const view *v, int id) {
-  return status_word(zone_of(v, id)->kind);
-}
-
-static const char *zone_contact_name(const view *v, int id) {
-  return v->m->contacts[zone_of(v, id)->contact_id].name;
-}
-
+WORD_OF(zone_word, status_word(zone_of(v, id)->kind))
+WORD_OF(zone_contact_name, v->m->contacts[zone_of(v, id)->contact_id].name)
 /* clang-format off */
 #define ZONE PER_ZONE, AS_REAL, PRINT_ZONES, C
 #define EDGE(name, scene, part, at, help) \
@@ -463,7 +453,7 @@ EDGE("z_to", SCENE_AXI, 1, zone_to, "where the zone ends"),
 const effect_ops zones_effect = {
   .name = "table of zones", .bit = NO_BIT, .required = requires_zones,
   .expected = expected, .own = STAGE_ZONES, .table = {PRINT_ZONES, PER_ZONE},
-  .items = zones_items, .size = sizeof(zone_list), .copy_as = COPY_IS_NEW,
-  .on = {.due = zones_due, .accept = find_zones},
+  .items = offsetof(zone_list, n), .size = sizeof(zone_list),
+  .copy_as = COPY_IS_NEW, .on = {.due = zones_due, .accept = find_zones},
   COLUMNS_OF(columns)};
 /* clang-format on */

@@ -681,10 +681,6 @@ static int requires_goals(const model *m, const reason *why) {
                  m->accuracy.goals[0].name);
 }
 
-static int goal_items(const void *self) {
-  return ((const goal_state *)self)->n;
-}
-
 #include "run/column_row.h"
 
 static const goal_result *result_of(const view *v, int id) {
@@ -699,18 +695,9 @@ VALUE(goal_band, result_of(v, id)->band)
 VALUE(goal_solver, result_of(v, id)->solver)
 VALUE(goal_ends, 100 * result_of(v, id)->ends)
 
-static const char *goal_name(const view *v, int id) {
-  return v->m->accuracy.goals[id].name;
-}
-
-static const char *goal_unit_word(const view *v, int id) {
-  return model_goal_unit(v->m, id);
-}
-
-static const char *goal_word(const view *v, int id) {
-  return goal_verdict_word(result_of(v, id)->verdict);
-}
-
+WORD_OF(goal_name, v->m->accuracy.goals[id].name)
+WORD_OF(goal_unit_word, model_goal_unit(v->m, id))
+WORD_OF(goal_word, goal_verdict_word(result_of(v, id)->verdict))
 /* clang-format off */
 #define GOAL PER_GOAL, AS_REAL, PRINT_GOALS, 0, SCENE_ALL, 0, NULL, 0
 #define WORD PER_GOAL, AS_WORD, PRINT_GOALS, 0, SCENE_ALL, 0, NULL, 0
@@ -736,7 +723,7 @@ static const column columns[] = {
 const effect_ops goals_effect = {
   .name = "errors of goals", .bit = NO_BIT, .required = requires_goals,
   .expected = expected, .table = {PRINT_GOALS, PER_GOAL},
-  .size = sizeof(goal_state), .items = goal_items,
+  .size = sizeof(goal_state), .items = offsetof(goal_state, n),
   .on = {.create = goals_new, .due = goals_due, .accept = find_goals,
          .show = show, .keep = keep, .copy = goals_copy},
   COLUMNS_OF(columns)};

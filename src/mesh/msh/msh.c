@@ -561,19 +561,6 @@ static int by_dim_and_tag(const void *p, const void *q) {
   return (a->tag > b->tag) - (a->tag < b->tag);
 }
 
-static status finish_groups(msh *m) {
-  raw_mesh *raw = m->raw;
-  if (raw->n_group > 0)
-    qsort(raw->group, raw->n_group, sizeof *raw->group, by_dim_and_tag);
-  for (EACH(raw_group, g, raw->group, raw->n_group)) {
-    int id = table_find(&m->names, table_key(g->dim, g->tag));
-    size_t n = id >= 0 ? m->name[id].length : 0;
-    PASS_NEW(g->name, n + 1);
-    if (n > 0) memcpy(g->name, m->name[id].text, n);
-  }
-  return OK;
-}
-
 /* ---- blocks -------------------------------------------------------------- */
 
 typedef struct block_order {
@@ -693,6 +680,14 @@ status msh_read(const char *file, raw_mesh **out) {
   m.raw = *out;
   OWNS(m.raw);
   PASS(read_sections(&m));
-  PASS(finish_groups(&m));
+  raw_mesh *raw = m.raw;
+  if (raw->n_group > 0)
+    qsort(raw->group, raw->n_group, sizeof *raw->group, by_dim_and_tag);
+  for (EACH(raw_group, g, raw->group, raw->n_group)) {
+    int id = table_find(&m.names, table_key(g->dim, g->tag));
+    size_t n = id >= 0 ? m.name[id].length : 0;
+    PASS_NEW(g->name, n + 1);
+    if (n > 0) memcpy(g->name, m.name[id].text, n);
+  }
   return finish_blocks(&m);
 }

@@ -282,11 +282,10 @@ status scan_quoted(scan *s, const char **text, size_t *length) {
   return OK;
 }
 
-/* 1 if $Name or $EndName is the next word. */
-static int is_mark(const scan *s, size_t at, const char *start,
-                   const char *name) {
-  size_t k = strlen(start), n = strlen(name);
-  return at + k + n <= s->size && memcmp(s->data + at, start, k) == 0 &&
+/* 1 if $EndName is the next word. */
+static int is_mark(const scan *s, size_t at, const char *name) {
+  size_t k = strlen("$End"), n = strlen(name);
+  return at + k + n <= s->size && memcmp(s->data + at, "$End", k) == 0 &&
          memcmp(s->data + at + k, name, n) == 0 &&
          ends_word(s->data[at + k + n]);
 }
@@ -294,7 +293,7 @@ static int is_mark(const scan *s, size_t at, const char *start,
 status scan_end(scan *s, const char *name, const char *what) {
   s->binary = 0;
   skip_empty_lines(s);
-  if (s->at < s->size && is_mark(s, s->at, "$End", name)) {
+  if (s->at < s->size && is_mark(s, s->at, name)) {
     s->at += 4 + strlen(name);
     return scan_line(s);
   }
@@ -306,7 +305,7 @@ status scan_skip(scan *s, const char *name) {
     const char *dollar = memchr(s->data + at, '$', s->size - at);
     if (dollar == NULL) break;
     at = dollar - s->data;
-    if (!is_mark(s, at, "$End", name)) continue;
+    if (!is_mark(s, at, name)) continue;
     s->at = at;
     return scan_end(s, name, "its lines");
   }

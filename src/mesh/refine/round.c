@@ -86,19 +86,6 @@ static void find_curves(round_surface *s) {
     }
 }
 
-static status find_edges(round_surface *s) {
-  const int n = s->f.n_node;
-  PASS_NEW_ALL(OF(s->face, 2 * n * s->f.n), OF(s->kind, n * s->f.n));
-  for (int k = 0; k < 2 * n * s->f.n; ++k) s->face[k] = -1;
-  for (int i = 0; i < s->f.n; ++i)
-    for (int a = 0; a < n; ++a)
-      if (n == 3 || a == 0)
-        PASS(add_edge(s, i, s->f.node[n * i + a],
-                      s->f.node[n * i + (a + 1) % n]));
-  find_curves(s);
-  return OK;
-}
-
 /* ---- tangents and normals ------------------------------------------------ */
 
 static void set_tangents(round_surface *s, int n_all) {
@@ -246,7 +233,15 @@ status round_surface_new(const surface_faces *f, int n_all, const double *x,
     between(s, v[0], v[2], e[1]);
     cross(e[0], e[1], s->face_normal + 3 * i);
   }
-  PASS(find_edges(s));
+  const int n = s->f.n_node;
+  PASS_NEW_ALL(OF(s->face, 2 * n * s->f.n), OF(s->kind, n * s->f.n));
+  for (int k = 0; k < 2 * n * s->f.n; ++k) s->face[k] = -1;
+  for (int i = 0; i < s->f.n; ++i)
+    for (int a = 0; a < n; ++a)
+      if (n == 3 || a == 0)
+        PASS(add_edge(s, i, s->f.node[n * i + a],
+                      s->f.node[n * i + (a + 1) % n]));
+  find_curves(s);
   set_tangents(s, n_all);
   return set_surface(s, n_all);
 }

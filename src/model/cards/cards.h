@@ -125,17 +125,17 @@ int find_contact(const reading *r, const char *name);
 /* 0 if the line has min..max fields. */
 int record_fields(const reading *r, const record *line, int min, int max,
                   const char *expected);
-int field_real(const reading *r, const field *f, double min, double max,
-               const char *what, double *out);
+int field_real(const reading *r, const field *f, double min, const char *what,
+               double *out);
 int field_int(const reading *r, const field *f, int min, int max,
               const char *what, int *out);
 int field_quantity(const reading *r, const field *f, quantity *out);
 /* Path of the FILE= of the card from where the deck stands; NULL: not given. */
 status field_file(const reading *r, const char **path);
 /* Field of pair number i of the lines of a card: its first or second. */
-const field *pair_field(const card *c, int first_line, int i, int second);
+const field *pair_field(const card *c, int i, int second);
 /* Pairs over all lines (any number per line) as a table; arrays are new. */
-status read_pairs(reading *r, int first_line, int variable, value_table *out);
+status read_pairs(reading *r, int variable, value_table *out);
 /* Compare words without regard to case. */
 int same_word(const char *a, const char *b);
 /* Place of a parameter's value, or of the card. */

@@ -26,12 +26,6 @@ static int normalise(const reading *r, const record *line, const char *what,
   return 0;
 }
 
-static int read_direction(const reading *r, const record *line,
-                          const char *what, double d[3]) {
-  if (read_point(r, line, what, d) != 0) return -1;
-  return normalise(r, line, "direction", d);
-}
-
 /* A component of MOVE or the angle of ROTATE. */
 static int read_course(const reading *r, const record *line, int k,
                        quantity *q) {
@@ -133,8 +127,9 @@ static void read_shape(const reading *r, int n_line, obstacle *o) {
     case OBSTACLE_CYLINDER:
     case OBSTACLE_SPHERE:
       if (read_point(r, &line[0], "x, y [, z]", o->point) != 0) return;
-      if (n_line == 2)
-        read_direction(r, &line[1], "nx, ny [, nz]", o->direction);
+      if (n_line == 2 &&
+          read_point(r, &line[1], "nx, ny [, nz]", o->direction) == 0)
+        normalise(r, &line[1], "direction", o->direction);
       break;
     case OBSTACLE_GAP:
       if (record_fields(r, &line[0], 1, 1, wanted[o->shape]) == 0)
@@ -392,11 +387,11 @@ static status read_value(reading *r, const char *what, int variable,
     if (c->n_record == 0)
       message_add(r->m->log, P2007, &c->at, "*%s, TABLE= needs lines of pairs",
                   c->name);
-    PASS(read_pairs(r, 0, variable, pairs));
+    PASS(read_pairs(r, variable, pairs));
     /* Values of a table that must not be negative. */
     for (int i = 0; i < pairs->n; ++i)
       if (!(pairs->value[i] >= 0.0))
-        message_add(r->m->log, P2010, &pair_field(r->card, 0, i, 1)->at,
+        message_add(r->m->log, P2010, &pair_field(r->card, i, 1)->at,
                     "*%s: %s = %.15g in the table is negative", r->card->name,
                     what, pairs->value[i]);
     q->number = 1.0;

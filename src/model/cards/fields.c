@@ -18,12 +18,12 @@ int record_fields(const reading *r, const record *line, int min, int max,
   return -1;
 }
 
-int field_real(const reading *r, const field *f, double min, double max,
-               const char *what, double *out) {
+int field_real(const reading *r, const field *f, double min, const char *what,
+               double *out) {
   if (deck_real(f, r->m->log, out) != 0) return -1;
-  if (*out >= min && *out <= max) return 0;
+  if (*out >= min && *out <= DBL_MAX) return 0;
   char why[128];
-  range_text(*out, min, max, why, sizeof why);
+  range_text(*out, min, DBL_MAX, why, sizeof why);
   message_add(r->m->log, P2010, &f->at, "*%s: %s = %s", r->card->name, what,
               why);
   return -1;
@@ -76,7 +76,7 @@ void unknown_word(message_log *log, message_id id, const place *at,
                   const char *(*next)(const void *ctx, int i),
                   const void *ctx) {
   char all[400] = "";
-  const int wanted = message_wanted(log, ERROR);
+  const int wanted = message_wanted(log);
   const char *near = wanted ? nearest_word(word, next, ctx) : NULL, *one;
   size_t used = 0;
   for (int i = 0; wanted && near == NULL && (one = next(ctx, i)) != NULL; ++i)
@@ -107,19 +107,17 @@ int field_quantity(const reading *r, const field *f, quantity *out) {
   return deck_quantity(r->m->deck, f, r->axisymmetric, r->m->log, out);
 }
 
-/* Field of pair number i of the lines of a card, from first_line on. */
-const field *pair_field(const card *c, int first_line, int i, int second) {
-  const record *line = &c->records[first_line];
+const field *pair_field(const card *c, int i, int second) {
+  const record *line = c->records;
   for (; i >= line->n_field / 2; ++line) i -= line->n_field / 2;
   return &line->fields[2 * i + second];
 }
 
 /* 0 if the pairs ascend; else the log has it. */
-static int pairs_ascend(const reading *r, int first_line,
-                        const value_table *t) {
+static int pairs_ascend(const reading *r, const value_table *t) {
   for (int i = 1; i < t->n; ++i)
     if (!(t->at[i] > t->at[i - 1])) {
-      message_add(r->m->log, P2029, &pair_field(r->card, first_line, i, 0)->at,
+      message_add(r->m->log, P2029, &pair_field(r->card, i, 0)->at,
                   "*%s: the table must ascend, but %.15g follows %.15g",
                   r->card->name, t->at[i], t->at[i - 1]);
       return -1;
@@ -137,11 +135,11 @@ status field_file(const reading *r, const char **path) {
   return OK;
 }
 
-status read_pairs(reading *r, int first_line, int variable, value_table *out) {
+status read_pairs(reading *r, int variable, value_table *out) {
   const card *c = r->card;
   int total = 0;
   if (r->axisymmetric != NULL && variable == TABLE_Z) variable = TABLE_Y;
-  for (int i = first_line; i < c->n_record; ++i) {
+  for (int i = 0; i < c->n_record; ++i) {
     if (c->records[i].n_field % 2 != 0 || c->records[i].n_field == 0) {
       message_add(r->m->log, P2009, &c->records[i].at,
                   "%d field%s on this line of *%s; expected pairs",
@@ -154,14 +152,14 @@ status read_pairs(reading *r, int first_line, int variable, value_table *out) {
   PASS_NEW_REALS(total, &out->at, &out->value);
   out->variable = variable;
   int n = 0;
-  for (int i = first_line; i < c->n_record; ++i)
+  for (int i = 0; i < c->n_record; ++i)
     for (int k = 0; k + 1 < c->records[i].n_field; k += 2, ++n) {
       const field *f = &c->records[i].fields[k];
       if (deck_real(&f[0], r->m->log, &out->at[n]) != 0) return OK;
       if (deck_real(&f[1], r->m->log, &out->value[n]) != 0) return OK;
     }
   out->n = n;
-  if (pairs_ascend(r, first_line, out) != 0) out->n = 0;
+  if (pairs_ascend(r, out) != 0) out->n = 0;
   return OK;
 }
 

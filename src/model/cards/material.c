@@ -44,7 +44,7 @@ status apply_density(reading *r) {
   const record *line = &r->card->records[0];
   if (mat->has_density) report_twice(r);
   if (record_fields(r, line, 1, 1, "rho") != 0) return OK;
-  if (field_real(r, &line->fields[0], 0.0, DBL_MAX, "rho", &mat->density) == 0)
+  if (field_real(r, &line->fields[0], 0.0, "rho", &mat->density) == 0)
     mat->has_density = 1;
   return OK;
 }
@@ -58,8 +58,8 @@ static int read_expansion(const reading *r, const record *line, int i,
   double T = 0.0;
   if (record_fields(r, line, n + several, n + 1, expected[x->type]) != 0)
     return -1;
-  if (line->n_field > n && field_real(r, &line->fields[n], -DBL_MAX, DBL_MAX,
-                                      "temperature", &T) != 0)
+  if (line->n_field > n &&
+      field_real(r, &line->fields[n], -DBL_MAX, "temperature", &T) != 0)
     return -1;
   for (int c = 0; c < n; ++c) {
     if (deck_real(&line->fields[c], r->m->log, &x->alpha[c].value[i]) != 0)
@@ -218,8 +218,8 @@ status apply_trs(reading *r) {
   if (mat->clock.kind != SHIFT_NONE) report_twice(r);
   if (record_fields(r, line, 3, 3, "T_REF, C1, C2") != 0 ||
       deck_real(&line->fields[0], r->m->log, &s.reference) != 0 ||
-      field_real(r, &line->fields[1], 0.0, DBL_MAX, "C1", &s.c1) != 0 ||
-      field_real(r, &line->fields[2], DBL_MIN, DBL_MAX, "C2", &s.c2) != 0)
+      field_real(r, &line->fields[1], 0.0, "C1", &s.c1) != 0 ||
+      field_real(r, &line->fields[2], DBL_MIN, "C2", &s.c2) != 0)
     return OK;
   mat->clock = s;
   mat->clock_at = r->card->at;

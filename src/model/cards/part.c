@@ -72,8 +72,7 @@ status apply_section(reading *r) {
                   "*SOLID SECTION: the thickness is given by THICKNESS= and by "
                   "a data line");
     else if (record_fields(r, line, 1, 1, "thickness") == 0)
-      field_real(r, &line->fields[0], DBL_MIN, DBL_MAX, "thickness",
-                 &s->thickness);
+      field_real(r, &line->fields[0], DBL_MIN, "thickness", &s->thickness);
   }
   return OK;
 }
@@ -111,7 +110,7 @@ status apply_amplitude(reading *r) {
                   "*AMPLITUDE: the expression may depend on t only");
     return OK;
   }
-  return read_pairs(r, 0, TABLE_T, &a->table);
+  return read_pairs(r, TABLE_T, &a->table);
 }
 
 /* One more time, after the others; *right 0 if it is not. */

@@ -40,8 +40,7 @@ status apply_static(reading *r) {
   if (r->card->n_record > 0) {
     const record *line = &r->card->records[0];
     if (record_fields(r, line, 1, 1, "duration") != 0 ||
-        field_real(r, &line->fields[0], DBL_MIN, DBL_MAX, "duration",
-                   &s->total) != 0)
+        field_real(r, &line->fields[0], DBL_MIN, "duration", &s->total) != 0)
       s->total = 1.0;
   }
   s->dt = s->total;
@@ -76,15 +75,15 @@ static int take_increments(const reading *r, step *s) {
   if (record_fields(r, line, 2, 4, "dt, total [, dt_min [, dt_max]]") != 0)
     return -1;
   const field *f = line->fields;
-  if (field_real(r, &f[0], DBL_MIN, DBL_MAX, "dt", &s->dt) != 0 ||
-      field_real(r, &f[1], DBL_MIN, DBL_MAX, "total", &s->total) != 0)
+  if (field_real(r, &f[0], DBL_MIN, "dt", &s->dt) != 0 ||
+      field_real(r, &f[1], DBL_MIN, "total", &s->total) != 0)
     return -1;
   if (line->n_field > 3 &&
-      field_real(r, &f[3], DBL_MIN, DBL_MAX, "dt_max", &s->dt_max) != 0)
+      field_real(r, &f[3], DBL_MIN, "dt_max", &s->dt_max) != 0)
     return -1;
   s->dt_min = s->dt / 16.0;
   if (line->n_field > 2 && f[2].text[0] != '\0' &&
-      field_real(r, &f[2], DBL_MIN, DBL_MAX, "dt_min", &s->dt_min) != 0)
+      field_real(r, &f[2], DBL_MIN, "dt_min", &s->dt_min) != 0)
     return -1;
   check_increments(r, f, s);
   return 0;
@@ -176,15 +175,6 @@ plugin names_solver(const reading *r) {
 /* Of a solver that is to be balanced with errors that are zero. */
 static const double TOL_DEFAULT = 1e-10;
 
-/* The first increment starts from a coarser mesh of a geometry. */
-static void take_nested(const reading *r, const card_options *p, step *s) {
-  const char *file = r->m->mesh.file;
-  if (!p->solver.nested) return;
-  s->nested = s == r->m->steps && file != NULL && mesh_is_program(file);
-  if (!s->nested)
-    report_idle(r, "NESTED", "the first step and a .geo in *MESH");
-}
-
 /* 1: the step has one already; else it is given, at this place. */
 static int second_in_step(const reading *r, int *given, place *at) {
   if (*given)
@@ -210,7 +200,13 @@ status apply_solver(reading *r) {
   s->solver.max_memory = p->max_memory;
   if (p->solver.stiffness != STIFFNESS_AUTO && p->max_memory > 0.0)
     report_idle(r, "MAX_MEMORY", "STIFFNESS=AUTO");
-  take_nested(r, p, s);
+  /* The first increment starts from a coarser mesh of a geometry. */
+  const char *file = r->m->mesh.file;
+  if (p->solver.nested) {
+    s->nested = s == r->m->steps && file != NULL && mesh_is_program(file);
+    if (!s->nested)
+      report_idle(r, "NESTED", "the first step and a .geo in *MESH");
+  }
   s->check = p->solver.check;
   if (!s->balanced && p->solver.share != 0.05)
     report_idle(r, "SHARE", "TOL=BALANCED");

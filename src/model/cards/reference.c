@@ -121,7 +121,7 @@ static void read_point(const reading *r, int k, goal_card *g) {
                 "*GOAL: a second point counts with DISPLACEMENT only");
   if (record_fields(r, line, 2, 3, "x, y[, z]") != 0) return;
   for (int c = 0; c < line->n_field; ++c)
-    if (field_real(r, &line->fields[c], -DBL_MAX, DBL_MAX, "a coordinate",
+    if (field_real(r, &line->fields[c], -DBL_MAX, "a coordinate",
                    &g->point[k][c]) != 0)
       return;
 }

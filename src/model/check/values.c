@@ -24,7 +24,7 @@ int check_group(const model *m, const mesh *msh, const char *name,
   const mesh_group *g = mesh_find_group(msh, name);
   if (g != NULL) return (int)(g - msh->group);
   const char *near = lip_meant(m, name);
-  if (near == NULL && message_wanted(m->log, ERROR))
+  if (near == NULL && message_wanted(m->log))
     near = mesh_nearest_group(msh, name);
   if (near != NULL) {
     message_add(m->log, P2021, at, "the mesh has no group %s; did you mean %s?",

@@ -207,7 +207,7 @@ static int right_lines(const reading *r, const keyword *row) {
 static void unknown_card(reading *r) {
   const card *c = r->card;
   const char *near =
-      message_wanted(r->m->log, ERROR)
+      message_wanted(r->m->log)
           ? nearest_word(c->name, candidate_name, NAMES(keyword_table, INT_MAX))
           : NULL;
   place at = c->at; /* a file that is included may be no deck at all */

@@ -317,16 +317,6 @@ static status resolve_loads(model *m, const step *old, step *s) {
 static const solver_choice default_solver = {
     .ops = NULL, .param = NULL, .tol = 1e-10, .limit_max_iter = 1000};
 
-/* TOL=BALANCED requires the estimates it is balanced with. */
-static void call_estimates(const model *m, step *s) {
-  if (!s->balanced) return;
-  if (m->problem.given && s->solver_at.file != NULL)
-    message_add(m->log, P2037, &s->solver_at,
-                "*SOLVER, TOL=BALANCED needs a mesh, whose error counts");
-  if (m->n.contact > 0) s->accuracy.mesh = MESH_ERROR_YES;
-  s->accuracy.no_solver = 0;
-}
-
 /* Solver, tables and fields stay until changed. */
 static status carry_choices(const step *old, step *s) {
   if (s->solver_at.file == NULL) {
@@ -376,7 +366,14 @@ static status resolve_steps(model *m) {
     PASS(resolve_loads(m, old, s));
     for (int k = 0; k < s->print.n; ++k) find_points(m, &s->print.requests[k]);
     PASS(carry_choices(old, s));
-    call_estimates(m, s);
+    /* TOL=BALANCED requires the estimates it is balanced with. */
+    if (s->balanced) {
+      if (m->problem.given && s->solver_at.file != NULL)
+        message_add(m->log, P2037, &s->solver_at,
+                    "*SOLVER, TOL=BALANCED needs a mesh, whose error counts");
+      if (m->n.contact > 0) s->accuracy.mesh = MESH_ERROR_YES;
+      s->accuracy.no_solver = 0;
+    }
     old = s;
   }
   return OK;

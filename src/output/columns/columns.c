@@ -14,10 +14,7 @@
 #define SURFACE (v->s->contacts.surface)
 VALUE(contact_node_no, SURFACE->node_no[id])
 VALUE(contact_no, SURFACE->contact_id[id] + 1)
-static const char *contact_name(const view *v, int id) {
-  return v->m->contacts[SURFACE->contact_id[id]].name;
-}
-
+WORD_OF(contact_name, v->m->contacts[SURFACE->contact_id[id]].name)
 VALUE(contact_x, SURFACE->x[at(SURFACE->dim, id, part)])
 VALUE(contact_u_n,
       view_opening(v, id, 0) * v->s->contacts.uc[at(SURFACE->dim, id, 0)])
@@ -63,14 +60,8 @@ static double contact_force(const view *v, int id, int part) {
   return sum;
 }
 
-static double contact_pull(const view *v, int id, int part) {
-  return per_area(v, id, contact_force(v, id, part));
-}
-
-static const char *contact_word(const view *v, int id) {
-  return status_word(v->s->contacts.contact[id]);
-}
-
+VALUE(contact_pull, per_area(v, id, contact_force(v, id, part)))
+WORD_OF(contact_word, status_word(v->s->contacts.contact[id]))
 /* clang-format off */
 #define CON   PER_CONTACT_NODE, AS_REAL
 #define SUR SCENE_ALL, NEEDS_SURFACE
@@ -148,10 +139,7 @@ VALUE(total_open, v->s->contacts.totals[id].n_open)
 VALUE(total_slip, v->s->contacts.totals[id].n_slip)
 VALUE(total_stick, v->s->contacts.totals[id].n_stick)
 
-static const char *own_name(const view *v, int id) {
-  return v->m->contacts[id].name;
-}
-
+WORD_OF(own_name, v->m->contacts[id].name)
 /* clang-format off */
 #define TOTAL(name, unit, form, scenes, part, value, help)                    \
   {name, unit, PER_CONTACT, form, PRINT_TOTALS, C, scenes, NEEDS_TOTALS, name, \
@@ -542,7 +530,8 @@ int column_items(const column *c, const view *v) {
   if (c->of == PER_CONTACT_NODE)
     return v->s->contacts.surface != NULL ? v->s->contacts.surface->n : 0;
   if (c->of == PER_INCREMENT) return 1;
-  return e->items(effect_state(v->s->effects, e));
+  const char *own = effect_state(v->s->effects, e);
+  return *(const int *)(own + e->items);
 }
 
 enum { COLUMNS = sizeof((table *)0)->col / sizeof(column *) };

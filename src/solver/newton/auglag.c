@@ -718,8 +718,7 @@ static status auglag_solve(const contact_problem *cp, const void *par,
   PASS(s.failed);
   if (!done_well && cp->B == NULL) rep->outcome = auglag_uzawa(&s);
   rep->iterations = s.steps;
-  rep->residual = w->best.residual;
-  solver_take_best(&w->best, cp->m, u, r);
+  rep->residual = solver_take_best(&w->best, cp->m, u, r);
   PASS(s.failed);
   if (!done_well && cp->B != NULL) PASS(follow_limit(&s, rep));
   if (cycled && made_no_progress(control, rep)) rep->outcome = STOPPED_CYCLE;

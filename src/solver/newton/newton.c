@@ -336,8 +336,7 @@ static status newton_solve(const contact_problem *cp, const void *par,
   if (rep->outcome != CONVERGED && used_up(&s))
     rep->outcome = STOPPED_ITERATIONS;
   rep->iterations = s.steps;
-  rep->residual = w->best.residual;
-  solver_take_best(&w->best, cp->m, u, r);
+  rep->residual = solver_take_best(&w->best, cp->m, u, r);
   return OK;
 }
 

@@ -524,8 +524,7 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   if (rep->outcome == STOPPED_ITERATIONS && s.steps < limit)
     rep->outcome = STOPPED_STAGNATION;
   rep->iterations = s.steps;
-  rep->residual = w->best.residual;
-  solver_take_best(&w->best, cp->m, u, r);
+  rep->residual = solver_take_best(&w->best, cp->m, u, r);
   return OK;
 }
 
