@@ -154,7 +154,7 @@ static const struct misfit {
                {"/fclib_global/M", 2, 3, 0, "M is not square"},
                {"/fclib_global/H", 3, 2, 0, "H has 3 rows, M has 2"},
                {"/fclib_global/G", 3, 1, 0, "G has 3 rows, M has 2"},
-               {"/fclib_global/G", 0, -1, 0, "G has 0 rows and -1 columns"},
+               {"/fclib_global/G", 0, -1, 0, "G is 0 x -1"},
                {NULL, 0, 0, 0, "neither a group"}};
 
 TEST(matrices_that_do_not_fit_are_refused) {
