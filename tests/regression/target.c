@@ -201,7 +201,7 @@ static void must_miss(int nc, const char *accuracy, const char *why) {
 TEST(limits_stop_with_the_best_there_is) {
   must_miss(4, "*ACCURACY, TARGET=0.5, MAX_PASSES=1\n",
             "MAX_PASSES is reached");
-  must_miss(4, "*ACCURACY, TARGET=0.1, MAX_CPU=0.5\n", "MAX_CPU is 0.5");
+  must_miss(4, "*ACCURACY, TARGET=0.5, MAX_CPU=0.5\n", "MAX_CPU is 0.5");
   must_miss(4, "*ACCURACY, TARGET=0.1, MAX_MEMORY=20\n", "MAX_MEMORY is 20");
 }
 
