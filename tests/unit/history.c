@@ -44,9 +44,11 @@ static status keep(void *ctx, const state *s) {
   return OK;
 }
 
+/* Errors of an attempt are not those of the increment before. */
 static status count(void *ctx, const state *s, const char *why) {
   run_record *r = ctx;
   ck_assert_ptr_nonnull(why);
+  ck_assert(s->errors.error.energy == 0.0);
   ++r->rejected;
   try_dt = ldexp(0.5, -s->attempt);
   return OK;
