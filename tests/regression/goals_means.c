@@ -340,4 +340,15 @@ TEST(band_of_the_largest_pressure_has_a_narrow_peak) {
   }
 }
 
+/* A long strip has the pressure of its loads below it, here with a top of 100
+ * that is round at one end, and a pointed one at the other, where a node has
+ * more and the mean over 30 less: 101.2 - 0.4*30*105/768. */
+TEST(largest_pressure_is_where_the_mean_is) {
+  JOB j = strip(60, 2, "0",
+                "TOP, 1\nEND, 1\n*DSLOAD\nTOP, P, "
+                "\"max(100 - 0.012*x^2, 77.2 + 0.4*x)\"\n");
+  DAT t = job_table(&j, "GOALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 1, "value"), 100.0, 0.05);
+}
+
 UNIT_MAIN("goals_means")

@@ -153,6 +153,15 @@ status goal_mark_supports(const run *r, const goal_border *border,
 /* surface.c */
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
+/* The contact nodes of a plane contact in the order along it. */
+typedef struct goal_line {
+  int n, peak; /* peak: place of the peak */
+  int *node;   /* [n] */
+  double *s;   /* [n] along the faces from the peak, m */
+  double *at;  /* [contact nodes] the same by node; NAN: not on the line */
+} goal_line;
+/* Of the nodes on both sides of a peak; new. ERR_MEMORY. */
+status goal_line_new(const run *r, const goal_card *g, int peak, goal_line *l);
 /* between.c */
 /* 1: the friction of contact node q, closed or not, has reached its limit. */
 int goal_slides(const run *r, int q);

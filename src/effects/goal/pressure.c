@@ -202,90 +202,12 @@ static int peak_of(const run *r, const goal_card *g) {
   return best;
 }
 
-/* The contact nodes of a plane contact in the order along it. */
-typedef struct line {
-  int n, peak; /* peak: place of the peak */
-  int *node;   /* [n] */
-  double *s;   /* [n] along the faces from the peak, m */
-  double *at;  /* [contact nodes] the same by node; NAN: not on the line */
-} line;
-
-/* next[2*n]: the contact nodes next to each node of the line, or -1. */
-static status find_next(const run *r, const goal_card *g, int *next) {
-  const mesh_group *of = r->faces.pairs[g->contact_id].group;
-  OWNED_OF(int, where, goal_places(r, &where));
-  for (int k = 0; k < 2 * r->nodes.n; ++k) next[k] = -1;
-  for (int k = 0; k < of->n_item; ++k) {
-    const int *v = r->msh->face + 2 * of->item_id[k];
-    for (int a = 0; a < 2; ++a) {
-      const int q = where[v[a]], other = where[v[1 - a]];
-      if (q >= 0 && other >= 0) next[2 * q + (next[2 * q] >= 0)] = other;
-    }
-  }
-  return OK;
-}
-
-/* From the second node on to the third, m; 0: none, or round a corner. */
-static double edge_on(const run *r, const int *v) {
-  static const double CORNER = 0.64; /* cosine, of 50 degrees */
-  const double *x = r->surface->x;
-  double d[2], e[2];
-  if (v[2] < 0) return 0.0;
-  vector_of(2, x + 2 * v[0], x + 2 * v[1], d);
-  vector_of(2, x + 2 * v[1], x + 2 * v[2], e);
-  const double to = norm(2, e);
-  return v[0] != v[1] && dot(2, d, e) < CORNER * norm(2, d) * to ? 0.0 : to;
-}
-
-/* Goes on from the peak on both sides in turn, so that a closed curve has its
- * ends opposite to the peak. */
-static void follow(const run *r, const int *next, int peak, line *l) {
-  const double *x = r->surface->x, *t = r->surface->frame + 4 * peak + 2;
-  const int *first = next + 2 * peak;
-  int v[2][3], end[2] = {r->nodes.n, r->nodes.n};
-  double d[2] = {0.0};
-  if (first[0] >= 0) vector_of(2, x + 2 * peak, x + 2 * first[0], d);
-  for (int k = 0; k < 2; ++k)
-    memcpy(v[k], (int[]){peak, peak, first[(dot(2, d, t) > 0.0) ^ k]},
-           sizeof v[k]);
-  l->at[l->node[end[0]] = peak] = 0.0;
-  for (int k = 0; v[0][2] >= 0 || v[1][2] >= 0; k = 1 - k) {
-    int *u = v[k];
-    const double to = edge_on(r, u);
-    if (!(to > 0.0) || !isnan(l->at[u[2]])) {
-      u[2] = -1;
-      continue;
-    }
-    end[k] += k == 0 ? -1 : 1;
-    l->node[end[k]] = u[2];
-    l->at[u[2]] = l->at[u[1]] + (k == 0 ? -to : to);
-    u[0] = u[1];
-    u[1] = u[2];
-    u[2] = next[2 * u[1] + (next[2 * u[1]] == u[0])];
-  }
-  l->n = end[1] - end[0] + 1;
-  l->peak = r->nodes.n - end[0];
-  memmove(l->node, l->node + end[0], l->n * sizeof *l->node);
-}
-
-static status line_new(const run *r, const goal_card *g, int peak, line *l) {
-  const int n = r->nodes.n;
-  if (r->msh->dim == 3) return OK;
-  OWNED_NEW(int, next, 2 * n);
-  PASS_NEW_ALL(OF(l->node, 2 * n + 1), OF(l->s, n), OF(l->at, n));
-  PASS(find_next(r, g, next));
-  for (int q = 0; q < n; ++q) l->at[q] = NAN;
-  follow(r, next, peak, l);
-  for (int k = 0; k < l->n; ++k) l->s[k] = l->at[l->node[k]];
-  return OK;
-}
-
-static int is_closed(const run *r, const line *l, int k) {
+static int is_closed(const run *r, const goal_line *l, int k) {
   return k >= 0 && k < l->n && r->result.contact[l->node[k]] != CONTACT_OPEN;
 }
 
 /* First and last closed node of the zone that holds the peak. */
-static void zone_of(const run *r, const line *l, int *first, int *last) {
+static void zone_of(const run *r, const goal_line *l, int *first, int *last) {
   *first = *last = l->peak;
   while (is_closed(r, l, *first - 1)) --*first;
   while (is_closed(r, l, *last + 1)) ++*last;
@@ -311,7 +233,7 @@ static weight weight_at(const run *r, const goal_card *g, int q) {
 
 /* The top of the parabola through the peak, above both its neighbours, and
  * these. */
-static void refine_peak(const run *r, const line *l, weight *w) {
+static void refine_peak(const run *r, const goal_line *l, weight *w) {
   const int k = l->peak;
   const double a = l->s[k - 1], b = l->s[k + 1];
   const double p = pressure_of(r, l->node[k]);
@@ -323,7 +245,7 @@ static void refine_peak(const run *r, const line *l, weight *w) {
 }
 
 /* Planes of symmetry at the ends of the line. */
-static void set_mirrors(const run *r, const line *l, weight *w) {
+static void set_mirrors(const run *r, const goal_line *l, weight *w) {
   const int end[2] = {0, l->n - 1};
   for (int k = 0; k < 2; ++k)
     w->mirror[k] = goal_is_mirrored(r, l->node[end[k]]) ? l->s[end[k]] - w->from
@@ -338,7 +260,7 @@ static double part_behind(const run *r, int q, double largest) {
 }
 
 /* Half the half width of a zone, m. */
-static double half_of(const run *r, const line *l, int first, int last) {
+static double half_of(const run *r, const goal_line *l, int first, int last) {
   const int end[2] = {l->node[first], l->node[last]};
   double largest = 0.0, behind = 0.0;
   for (int k = first; k <= last; ++k)
@@ -380,7 +302,7 @@ static void evaluate_mean(const goal_card *g, const weight *w,
 
 /* The longest edge within the radius, and whether it is cut by an end of the
  * surface that carries. */
-static void evaluate_line(const run *r, const goal_card *g, const line *l,
+static void evaluate_line(const run *r, const goal_card *g, const goal_line *l,
                           const weight *w, goal_form *f) {
   double longest = 0.0;
   for (int k = 1; k < l->n; ++k)
@@ -394,7 +316,7 @@ static void evaluate_line(const run *r, const goal_card *g, const line *l,
 }
 
 /* Where the largest pressure may be infinite there is no peak. */
-static void place_on_line(const run *r, const goal_card *g, const line *l,
+static void place_on_line(const run *r, const goal_card *g, const goal_line *l,
                           weight *w, goal_form *f) {
   int first, last;
   double moved[2];
@@ -411,7 +333,7 @@ static void place_on_line(const run *r, const goal_card *g, const line *l,
   if (g->n_point > 0)
     for (int c = 0; c < w->dim; ++c) w->origin[c] = g->point[0][c];
   vector_of(2, r->surface->x + 2 * peak, w->origin, moved);
-  w->from = dot(2, moved, w->t);
+  w->from = l->s[l->peak] + dot(2, moved, w->t);
   w->s = l->at;
   set_mirrors(r, l, w);
   w->at = on_line;
@@ -590,11 +512,35 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
 
 /* l: through the peak, of plane contacts. */
 static status place_mean(const run *r, const goal_card *g, int peak,
-                         const line *l, weight *w, goal_form *f) {
+                         const goal_line *l, weight *w, goal_form *f) {
   *w = weight_at(r, g, peak);
   if (w->dim == 3) return place_on_disc(r, g, peak, w, f);
   place_on_line(r, g, l, w, f);
   return OK;
+}
+
+/* Of nodes with about the pressure of the peak the one where the mean over the
+ * same radius is the largest. */
+static void choose_peak(const run *r, const goal_card *g, goal_line *l,
+                        weight *w) {
+  static const double ABOUT = 0.95; /* -, of the pressure of the peak */
+  double most = add_nodes(r, g, w, NULL);
+  const double least = fmax(most, ABOUT * pressure_of(r, l->node[l->peak]));
+  goal_card same = *g;
+  same.radius = w->radius;
+  for (int k = 0; k < l->n; ++k) {
+    goal_form f = {.why = GOAL_RELIABLE};
+    weight other = weight_at(r, g, l->node[k]);
+    goal_line at = *l;
+    at.peak = k;
+    if (!(pressure_of(r, l->node[k]) > least)) continue;
+    place_on_line(r, &same, &at, &other, &f);
+    const double mean = add_nodes(r, g, &other, NULL);
+    if (f.why != GOAL_RELIABLE || !(mean > most)) continue;
+    most = mean;
+    *w = other;
+    l->peak = k;
+  }
 }
 
 /* -, of the mean; half the radius changes that of Hertz by 0.002. */
@@ -602,8 +548,8 @@ static const double NARROW = 0.01;
 
 /* A radius over which the pressure goes like a parabola, while its half has two
  * elements; what the mean may be off. */
-static status narrow(const run *r, const goal_card *g, int peak, const line *l,
-                     weight *w, goal_form *f) {
+static status narrow(const run *r, const goal_card *g, int peak,
+                     const goal_line *l, weight *w, goal_form *f) {
   for (double mean = add_nodes(r, g, w, NULL);;) {
     weight half;
     goal_card closer = *g;
@@ -638,15 +584,19 @@ static status sharpen(const run *r, const weight *w, goal_form *f, int id) {
 }
 
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f) {
-  const int peak = peak_of(r, g);
+  int peak = peak_of(r, g);
   f->value = NAN;
   if (peak < 0) f->why = GOAL_NO_ZONE;
   if (!goal_has_one_thickness(r, g->contact_id)) f->why = GOAL_NOT_COVERED;
   if (f->why != GOAL_RELIABLE) return OK;
   weight w;
-  OWNED_PARTS(line, l, line_new(r, g, peak, &l));
+  OWNED_PARTS(goal_line, l, goal_line_new(r, g, peak, &l));
   PASS(place_mean(r, g, peak, &l, &w, f));
   if (f->why != GOAL_RELIABLE) return OK;
+  if (g->n_point == 0 && l.n > 0) {
+    choose_peak(r, g, &l, &w);
+    peak = l.node[l.peak];
+  }
   if (!(g->radius > 0.0)) PASS(narrow(r, g, peak, &l, &w, f));
   f->value = add_nodes(r, g, &w, f->psi);
   PASS(sharpen(r, &w, f, g->contact_id));
@@ -656,7 +606,7 @@ status goal_set_pressure(const run *r, const goal_card *g, goal_form *f) {
 /* ---- the width of a zone ------------------------------------------------- */
 
 /* w->N1, N2 for x0; returns the end along the line, m. */
-static double end_for(const run *r, const line *l, weight *w, double x0) {
+static double end_for(const run *r, const goal_line *l, weight *w, double x0) {
   w->x0 = x0;
   w->N1 = w->N2 = 0.0;
   w->n = 0;
@@ -682,7 +632,7 @@ typedef struct zone_ends {
 } zone_ends;
 
 /* The ends for x0 that follows from them. */
-static void find_ends(const run *r, const line *l, zone_ends *z) {
+static void find_ends(const run *r, const goal_line *l, zone_ends *z) {
   enum { PASSES = 12 };
   for (int pass = 0; pass < PASSES; ++pass) {
     const double middle = z->mirrored[0]   ? z->at[0]
@@ -704,7 +654,7 @@ static int is_off(const zone_ends *z, int k) {
 }
 
 /* Halves the parts at ends that are off; 1: there are. */
-static int move_x0(const line *l, const int *end, zone_ends *z) {
+static int move_x0(const goal_line *l, const int *end, zone_ends *z) {
   int any = 0;
   for (int k = 0; k < 2; ++k) {
     if (!is_off(z, k) || z->w[k].n <= LEAST) continue;
@@ -718,7 +668,7 @@ static int move_x0(const line *l, const int *end, zone_ends *z) {
 static const double QUARTER = 0.25; /* -, of the half width */
 
 /* End k of the zone from its last closed node; 0: at the end of the surface. */
-static int start_end(const run *r, const line *l, int k, int at,
+static int start_end(const run *r, const goal_line *l, int k, int at,
                      const weight *w, zone_ends *z) {
   const int border = at == 0 || at == l->n - 1;
   z->w[k] = *w;
@@ -748,7 +698,7 @@ static double roughness_of(const zone_ends *z, const zone_ends *half, int k,
   return fmax(change, z->part[k] < QUARTER ? edge : least);
 }
 
-static status set_ends(const run *r, const goal_card *g, const line *l,
+static status set_ends(const run *r, const goal_card *g, const goal_line *l,
                        const weight *w, goal_form *f) {
   enum { HALVINGS = 30 };
   int end[2];
@@ -787,7 +737,7 @@ status goal_set_width(const run *r, const goal_card *g, goal_form *f) {
   if (peak < 0) f->why = GOAL_NO_ZONE;
   if (f->why != GOAL_RELIABLE) return OK;
   weight w = weight_at(r, g, peak);
-  OWNED_PARTS(line, l, line_new(r, g, peak, &l));
+  OWNED_PARTS(goal_line, l, goal_line_new(r, g, peak, &l));
   w.s = l.at;
   return set_ends(r, g, &l, &w, f);
 }

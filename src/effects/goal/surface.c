@@ -1,6 +1,7 @@
 /*
  * Edges of the contact surface: closed, stuck, curved; where its status
- * changes, or it is closed at its border, where stresses may be infinite.
+ * changes, or it is closed at its border, where stresses may be infinite. Its
+ * nodes along a line.
  */
 #include "base/base.h"
 #include "effects/goal/parts.h"
@@ -381,4 +382,77 @@ status goal_surface_new(const run *r, const goal_border *border,
   PASS(goal_add_bent(r, &rings, s));
   PASS(goal_add_given(r, s));
   return goal_mark_supports(r, border, of, s);
+}
+
+/* ---- nodes along a line ---------------------------------------------------
+ */
+
+/* next[2*n]: the contact nodes next to each node of the line, or -1. */
+static status find_next(const run *r, const goal_card *g, int *next) {
+  const mesh_group *of = r->faces.pairs[g->contact_id].group;
+  OWNED_OF(int, where, goal_places(r, &where));
+  for (int k = 0; k < 2 * r->nodes.n; ++k) next[k] = -1;
+  for (int k = 0; k < of->n_item; ++k) {
+    const int *v = r->msh->face + 2 * of->item_id[k];
+    for (int a = 0; a < 2; ++a) {
+      const int q = where[v[a]], other = where[v[1 - a]];
+      if (q >= 0 && other >= 0) next[2 * q + (next[2 * q] >= 0)] = other;
+    }
+  }
+  return OK;
+}
+
+/* From the second node on to the third, m; 0: none, or round a corner. */
+static double edge_on(const run *r, const int *v) {
+  static const double CORNER = 0.64; /* cosine, of 50 degrees */
+  const double *x = r->surface->x;
+  double d[2], e[2];
+  if (v[2] < 0) return 0.0;
+  vector_of(2, x + 2 * v[0], x + 2 * v[1], d);
+  vector_of(2, x + 2 * v[1], x + 2 * v[2], e);
+  const double to = norm(2, e);
+  return v[0] != v[1] && dot(2, d, e) < CORNER * norm(2, d) * to ? 0.0 : to;
+}
+
+/* Goes on from the peak on both sides in turn, so that a closed curve has its
+ * ends opposite to the peak. */
+static void follow(const run *r, const int *next, int peak, goal_line *l) {
+  const double *x = r->surface->x, *t = r->surface->frame + 4 * peak + 2;
+  const int *first = next + 2 * peak;
+  int v[2][3], end[2] = {r->nodes.n, r->nodes.n};
+  double d[2] = {0.0};
+  if (first[0] >= 0) vector_of(2, x + 2 * peak, x + 2 * first[0], d);
+  for (int k = 0; k < 2; ++k)
+    memcpy(v[k], (int[]){peak, peak, first[(dot(2, d, t) > 0.0) ^ k]},
+           sizeof v[k]);
+  l->at[l->node[end[0]] = peak] = 0.0;
+  for (int k = 0; v[0][2] >= 0 || v[1][2] >= 0; k = 1 - k) {
+    int *u = v[k];
+    const double to = edge_on(r, u);
+    if (!(to > 0.0) || !isnan(l->at[u[2]])) {
+      u[2] = -1;
+      continue;
+    }
+    end[k] += k == 0 ? -1 : 1;
+    l->node[end[k]] = u[2];
+    l->at[u[2]] = l->at[u[1]] + (k == 0 ? -to : to);
+    u[0] = u[1];
+    u[1] = u[2];
+    u[2] = next[2 * u[1] + (next[2 * u[1]] == u[0])];
+  }
+  l->n = end[1] - end[0] + 1;
+  l->peak = r->nodes.n - end[0];
+  memmove(l->node, l->node + end[0], l->n * sizeof *l->node);
+}
+
+status goal_line_new(const run *r, const goal_card *g, int peak, goal_line *l) {
+  const int n = r->nodes.n;
+  if (r->msh->dim == 3) return OK;
+  OWNED_NEW(int, next, 2 * n);
+  PASS_NEW_ALL(OF(l->node, 2 * n + 1), OF(l->s, n), OF(l->at, n));
+  PASS(find_next(r, g, next));
+  for (int q = 0; q < n; ++q) l->at[q] = NAN;
+  follow(r, next, peak, l);
+  for (int k = 0; k < l->n; ++k) l->s[k] = l->at[l->node[k]];
+  return OK;
 }
