@@ -400,7 +400,7 @@ status deck_read(const char *file, int n_define, const char *const *defines,
                  message_log *log, deck **out) {
   *out = NULL;
   OWNED_NEW(deck, d, 1);
-  reader r ENDS_BY(reader_free) = {.log = log, .d = d, .mode = DATA_EARLY};
+  ENDS_BY(reader_free) reader r = {.log = log, .d = d, .mode = DATA_EARLY};
   OWNS(d);
   PASS_NEW(d->own, 1);
   PASS(source_open(d, log, file, NULL, &r.top));

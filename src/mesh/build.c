@@ -207,8 +207,8 @@ status build_mesh(const raw_mesh *raw, double scale, const place *at,
                   message_log *log, mesh **out) {
   *out = NULL;
   OWNED_NEW(mesh, m, 1);
-  builder b ENDS_BY(release) = {
-      .raw = raw, .scale = scale, .at = at, .log = log, .m = m};
+  ENDS_BY(release)
+  builder b = {.raw = raw, .scale = scale, .at = at, .log = log, .m = m};
   b.errors = message_count(log, ERROR);
   OWNS(m);
   PASS_NEW(b.first, raw->n_block);

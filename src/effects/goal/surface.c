@@ -384,8 +384,7 @@ status goal_surface_new(const run *r, const goal_border *border,
   return goal_mark_supports(r, border, of, s);
 }
 
-/* ---- nodes along a line ---------------------------------------------------
- */
+/* ---- nodes along a line -------------------------------------------------- */
 
 /* next[2*n]: the contact nodes next to each node of the line, or -1. */
 static status find_next(const run *r, const goal_card *g, int *next) {
